@@ -18,10 +18,14 @@ Json hello_message(const fs::path& folder) {
 }
 
 Json scene_message(const fs::path& folder, const Scene& scene, const Json& settings) {
-    const SceneExport files;
-    write_scene_files(folder, scene, files);
-    return {{"message", "scene"},      {"scene", files.json},    {"glb", files.glb},    {"triangles", files.triangles},
-            {"objects", files.object}, {"blocks", files.blocks}, {"settings", settings}};
+    write_scene_files(folder, scene);
+    return {{"message", "scene"},
+            {"scene", SceneExport::json},
+            {"glb", SceneExport::glb},
+            {"triangles", SceneExport::triangles},
+            {"objects", SceneExport::object},
+            {"blocks", SceneExport::blocks},
+            {"settings", settings}};
 }
 
 Json build_message(const Json& settings) { return {{"message", "build"}, {"settings", settings}}; }

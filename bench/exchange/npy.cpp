@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <glm/gtc/packing.hpp>
 #include <numeric>
 #include <regex>
 
@@ -47,10 +47,7 @@ Type plain() {
 double half(const char* bytes) {
     std::uint16_t bits = 0;
     std::memcpy(&bits, bytes, sizeof bits);
-    const int exponent = (bits >> 10) & 31, fraction = bits & 1023;
-    const double sign = (bits & 0x8000) != 0 ? -1 : 1;
-    if (exponent == 31) return fraction == 0 ? sign * HUGE_VAL : std::nan("");
-    return sign * (exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024 + fraction, exponent - 25));
+    return static_cast<double>(glm::unpackHalf1x16(bits));
 }
 
 /// Nothing where the name is of no simple type.

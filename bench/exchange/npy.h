@@ -2,11 +2,13 @@
 // are either no longer kept or bring an array type of their own with them.
 #pragma once
 
-#include <cstdint>
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace umbra {
@@ -18,24 +20,12 @@ using Shape = std::vector<std::size_t>;
 void write_npy(const std::filesystem::path& file, std::string_view type, const Shape& shape,
                std::span<const std::byte> bytes);
 
+/// The same of floats or unsigned integers.
 template <class T>
-struct NpyType;
-template <>
-struct NpyType<float> {
-    static constexpr std::string_view name = "<f4";
-};
-template <>
-struct NpyType<std::uint32_t> {
-    static constexpr std::string_view name = "<u4";
-};
-template <>
-struct NpyType<std::uint8_t> {
-    static constexpr std::string_view name = "|u1";
-};
-
-template <class T>
-void write_npy(const std::filesystem::path& file, std::span<const T> items, const Shape& shape) {
-    write_npy(file, NpyType<T>::name, shape, std::as_bytes(items));
+void write_npy(const std::filesystem::path& file, const std::vector<T>& items, const Shape& shape) {
+    static_assert(std::is_floating_point_v<T> || std::is_unsigned_v<T>);
+    const char order = sizeof(T) == 1 ? '|' : '<', kind = std::is_floating_point_v<T> ? 'f' : 'u';
+    write_npy(file, fmt::format("{}{}{}", order, kind, sizeof(T)), shape, std::as_bytes(std::span(items)));
 }
 
 struct Numbers {

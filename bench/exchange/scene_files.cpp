@@ -41,14 +41,16 @@ public:
     explicit Buffer(Json& root) : root_(root) {}
 
     template <class T>
-    std::size_t accessor(const std::vector<T>& items, int component, const char* type, std::size_t count) {
+    std::size_t accessor(const std::vector<T>& items, int component, const char* type,
+                         const Json& bounds = Json::object()) {
         const std::size_t begin = bytes_.size();
         bytes_.append(reinterpret_cast<const char*>(items.data()), items.size() * sizeof(T));
         root_["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bytes_.size() - begin}});
         root_["accessors"].push_back({{"bufferView", root_["bufferViews"].size() - 1},
                                       {"componentType", component},
-                                      {"count", count},
+                                      {"count", items.size()},
                                       {"type", type}});
+        root_["accessors"].back().update(bounds);
         return root_["accessors"].size() - 1;
     }
     [[nodiscard]] const std::string& bytes() const { return bytes_; }
@@ -75,12 +77,10 @@ Json mesh_of(const Scene& scene, const Object& object, Buffer& buffer) {
             }
             corners.push_back(at->second);
         }
-    const std::size_t at = buffer.accessor(positions, kFloat, "VEC3", positions.size());
-    const std::size_t by = buffer.accessor(corners, kUnsigned, "SCALAR", corners.size());
+    const std::size_t at = buffer.accessor(positions, kFloat, "VEC3", {{"min", list(low)}, {"max", list(high)}});
+    const std::size_t by = buffer.accessor(corners, kUnsigned, "SCALAR");
     return {{"name", object.name},
-            {"primitives", {{{"attributes", {{"POSITION", at}}}, {"indices", by}, {"material", object.material}}}},
-            {"low", list(low)},
-            {"high", list(high)}};
+            {"primitives", {{{"attributes", {{"POSITION", at}}}, {"indices", by}, {"material", object.material}}}}};
 }
 
 /// The turn that takes -z to `direction`, as glTF's lights and cameras look.
@@ -129,11 +129,8 @@ std::string glb_text(const Scene& scene) {
              {"pbrMetallicRoughness", {{"baseColorFactor", {m.O_d.x, m.O_d.y, m.O_d.z, 1}}, {"metallicFactor", 0}}}});
     for (const Object& object : scene.objects) {
         if (object.triangle_count == 0) continue;
-        Json mesh       = mesh_of(scene, object, buffer);
-        Json& position  = root["accessors"][mesh["primitives"][0]["attributes"]["POSITION"].get<std::size_t>()];
-        position["min"] = mesh["low"], position["max"] = mesh["high"];
-        mesh.erase("low"), mesh.erase("high");
-        root["meshes"].push_back(mesh);
+        Json mesh = mesh_of(scene, object, buffer);  // which adds members to the root
+        root["meshes"].push_back(std::move(mesh));
         nodes.push_back({{"name", object.name}, {"mesh", root["meshes"].size() - 1}});
     }
     for (const Light& light : scene.lights) {
@@ -185,9 +182,9 @@ std::string glb_text(const Scene& scene) {
     return std::string(reinterpret_cast<const char*>(header), sizeof header) + chunks;
 }
 
-void write_scene_files(const fs::path& folder, const Scene& scene, const SceneExport& names) {
-    write_text(folder / names.json, native_text(scene));
-    write_text(folder / names.glb, glb_text(scene));
+void write_scene_files(const fs::path& folder, const Scene& scene) {
+    write_text(folder / SceneExport::json, native_text(scene));
+    write_text(folder / SceneExport::glb, glb_text(scene));
     const std::size_t n = scene.triangles.size();
     std::vector<float> corners;
     std::vector<std::uint8_t> blocks;
@@ -199,9 +196,9 @@ void write_scene_files(const fs::path& folder, const Scene& scene, const SceneEx
         }
         blocks.push_back(scene.blocks(t) ? 1 : 0);
     }
-    write_npy(folder / names.triangles, std::span<const float>(corners), {n, 3, 3});
-    write_npy(folder / names.object, std::span<const std::uint32_t>(scene.triangle_object), {n});
-    write_npy(folder / names.blocks, std::span<const std::uint8_t>(blocks), {n});
+    write_npy(folder / SceneExport::triangles, corners, {n, 3, 3});
+    write_npy(folder / SceneExport::object, scene.triangle_object, {n});
+    write_npy(folder / SceneExport::blocks, blocks, {n});
 }
 
 void write_points(const fs::path& file, const Scene& scene, const PointBatch& points) {
@@ -224,7 +221,7 @@ void write_points(const fs::path& file, const Scene& scene, const PointBatch& po
 void write_asked(const fs::path& file, const PointBatch& points, LightId light) {
     std::vector<std::uint8_t> asked(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) asked[i] = points.asks(light, i) ? 1 : 0;
-    write_npy(file, std::span<const std::uint8_t>(asked), {asked.size()});
+    write_npy(file, asked, {asked.size()});
 }
 
 }  // namespace umbra

@@ -10,15 +10,15 @@ namespace umbra {
 
 /// Names below the folder that the files are written to.
 struct SceneExport {
-    std::string json      = "scene.json";     ///< the native scene, whole
-    std::string glb       = "scene.glb";      ///< the same triangles, the camera and the lights as glTF binary
-    std::string triangles = "triangles.npy";  ///< float32, triangles x 3 x 3: corners in world space
-    std::string object    = "objects.npy";    ///< uint32 a triangle: index into "objects" of the JSON
-    std::string blocks    = "blocks.npy";     ///< uint8 a triangle: 1 where it takes all light that meets it, else 0
+    static constexpr const char* json      = "scene.json";     ///< the native scene, whole
+    static constexpr const char* glb       = "scene.glb";      ///< the same triangles, camera and lights as glTF binary
+    static constexpr const char* triangles = "triangles.npy";  ///< float32, triangles x 3 x 3: corners in world space
+    static constexpr const char* object    = "objects.npy";    ///< uint32 a triangle: index into "objects" of the JSON
+    static constexpr const char* blocks    = "blocks.npy";     ///< uint8 a triangle: 1 where it takes all light, else 0
 };
 
 /// Throws InputError where a file cannot be written.
-void write_scene_files(const std::filesystem::path& folder, const Scene& scene, const SceneExport& names = {});
+void write_scene_files(const std::filesystem::path& folder, const Scene& scene);
 
 /// One record a point: position (float64, rounded from the exact point once more), normal, triangle (2^32 - 1 where there
 /// is none), u, v, column and row of the pixel (-1 in a batch without a raster).

@@ -78,8 +78,7 @@ TruthSceneRecord write_scene(const ChosenScene& chosen, const TruthOrder& order,
                             .height    = h,
                             .measures  = {"area"}};
     make_folder(questions), make_folder(answers);
-    const SceneExport files;
-    write_scene_files(questions, scene, files);
+    write_scene_files(questions, scene);
     write_points(questions / "points.npy", scene, prepared.points);
     std::vector<std::uint8_t> asked;
     for (LightId j = 0; j < lights; ++j)
@@ -87,9 +86,9 @@ TruthSceneRecord write_scene(const ChosenScene& chosen, const TruthOrder& order,
             asked.push_back(prepared.points.asks(j, i) ? 1 : 0);
             record.asked += asked.back();
         }
-    write_npy(questions / "asked.npy", std::span<const std::uint8_t>(asked), shape);
-    for (const std::string& name : {files.json, files.glb, files.triangles, files.object, files.blocks,
-                                    std::string("points.npy"), std::string("asked.npy")})
+    write_npy(questions / "asked.npy", asked, shape);
+    for (const char* name : {SceneExport::json, SceneExport::glb, SceneExport::triangles, SceneExport::object,
+                             SceneExport::blocks, "points.npy", "asked.npy"})
         add_file(record, questions / name);
     for (const Light& light : scene.lights)
         record.lights.push_back(
@@ -100,15 +99,15 @@ TruthSceneRecord write_scene(const ChosenScene& chosen, const TruthOrder& order,
         const Reference of = measure == "area" ? reference : default_reference(prepared.facts, Measure::irradiance);
         record.exact       = record.exact && of.exact;
         const Answered all = answered(prepared, of);
-        const auto write   = [&](const std::string& name, auto values) {
+        const auto write   = [&](const std::string& name, const auto& values) {
             const fs::path file = answers / fmt::format("{}{}.npy", measure, name);
             write_npy(file, values, shape);
             add_file(record, file);
         };
-        write("", std::span<const float>(all.s));
-        write("_half_width", std::span<const float>(all.half_width));
-        write("_edge", std::span<const std::uint8_t>(all.edge));
-        write("_boundary", std::span<const std::uint8_t>(all.boundary));
+        write("", all.s);
+        write("_half_width", all.half_width);
+        write("_edge", all.edge);
+        write("_boundary", all.boundary);
     }
     return record;
 }

@@ -245,7 +245,7 @@ TEST_F(Contenders, AnswersInAFileAreJudged) {
     while (!p.points.asks(0, undefined)) ++undefined;
     values[undefined]   = std::nanf("");
     const fs::path file = folder_.path() / "mine.npy";
-    write_npy(file, std::span<const float>(values), {lights, 18, 32});
+    write_npy(file, values, {lights, 18, 32});
     CompareOptions options;
     options.size             = {32, 18};
     options.out              = folder_.path() / "out";
@@ -267,7 +267,7 @@ TEST_F(Contenders, AnswersInAFileAreJudged) {
 
     VisibilityPlane plane(n);
     const auto refused = [&](const std::vector<float>& all, const Shape& shape) -> std::string {
-        write_npy(file, std::span<const float>(all), shape);
+        write_npy(file, all, shape);
         try {
             read_answers(file, p.scene, p.points, 0, false, plane.out());
         } catch (const InputError& e) {

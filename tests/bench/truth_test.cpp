@@ -40,8 +40,7 @@ protected:
             for (LightId j = 0; j < p.scene.lights.size(); ++j)
                 for (std::size_t i = 0; i < p.points.size(); ++i)
                     all.push_back(run.planes[j].defined(i) ? run.planes[j].s[i] : std::nanf(""));
-            write_npy(answers_ / (file.stem().string() + ".npy"), std::span<const float>(all),
-                      {p.scene.lights.size(), 36, 64});
+            write_npy(answers_ / (file.stem().string() + ".npy"), all, {p.scene.lights.size(), 36, 64});
         }
     }
     [[nodiscard]] std::vector<ScoreRecord> scores(const std::string& measure = "area") const {
@@ -131,7 +130,7 @@ TEST_F(Truth, CountsWhatIsPlanted) {
             s = std::nanf(""), ++left;
     }
     ASSERT_EQ(darkened + lit + at_edge + left, 14);
-    write_npy(mine, std::span<const float>(given.values), given.shape);
+    write_npy(mine, given.values, given.shape);
     const ScoreRecord s = scores()[1];
     EXPECT_EQ(s.false_shadow, 5u);
     EXPECT_EQ(s.false_light, 3u);
@@ -172,7 +171,7 @@ TEST_F(Truth, RefusesWhatDoesNotFit) {
         return std::string();
     };
     EXPECT_EQ(message(), "");
-    write_npy(answers_ / "umbra_penumbra.npy", std::span<const float>(std::vector<float>(6)), {6});
+    write_npy(answers_ / "umbra_penumbra.npy", std::vector<float>(6), {6});
     EXPECT_NE(message().find("umbra_penumbra.npy: holds 6 values, expected 1 (lights) x 36 x 64"), std::string::npos);
     answer("exact");
     std::string bytes = bytes_of(set_ / "umbra_penumbra/area.npy");
