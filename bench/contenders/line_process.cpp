@@ -19,16 +19,14 @@
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/base/stopwatch.h"
 
 namespace umbra {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::size_t kMostLine = 1u << 16, kMostWords = 2048;
-constexpr std::chrono::milliseconds kTimeToEnd{2000}, kLook{20};
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+constexpr double kSecondsToEnd = 2;
+constexpr std::chrono::milliseconds kLook{20};
 
 /// How a program ended.
 std::string ending(int status) {
@@ -92,8 +90,8 @@ LineProcess::LineProcess(const std::vector<std::string>& command, const std::fil
 
 LineProcess::~LineProcess() {
     close_one(to_);
-    const auto start = Clock::now();
-    while (pid_ > 0 && Clock::now() - start < kTimeToEnd) {
+    const Stopwatch start;
+    while (pid_ > 0 && start.seconds() < kSecondsToEnd) {
         read_some(from_, read_, 0), read_some(errors_, stderr_, 0);  // so that it does not wait for us
         int status = 0;
         if (waitpid(pid_, &status, WNOHANG) == pid_) {
@@ -148,7 +146,7 @@ std::string LineProcess::ask(const std::string& line, double seconds) {
     if (!is_alive()) throw MethodError("the program has ended." + last_words());
     const std::string sent = line + "\n";
     std::size_t written    = 0;
-    const auto start       = Clock::now();
+    const Stopwatch start;
     while (true) {
         if (const std::size_t end_of_line = read_.find('\n'); end_of_line != std::string::npos) {
             std::string answer = read_.substr(0, end_of_line);
@@ -180,7 +178,7 @@ std::string LineProcess::ask(const std::string& line, double seconds) {
                 throw;
             }
         }
-        if (seconds_since(start) > seconds)
+        if (start.seconds() > seconds)
             fail(fmt::format("the program did not answer within {:g} s and was ended.", seconds));
         std::array<pollfd, 3> files{{{from_, POLLIN, 0}, {errors_, POLLIN, 0}, {to_, POLLOUT, 0}}};
         if (written == sent.size()) files[2].fd = -1;

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <ctime>
 
 #include "umbra/bench/compare/compare.h"
@@ -22,6 +21,7 @@
 #include "umbra/bench/run/chosen.h"
 #include "umbra/bench/sweep/content_key.h"
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/stopwatch.h"
 #include "umbra/core/io/scene_io.h"
 
 namespace umbra {
@@ -213,8 +213,8 @@ GradeRecord judge(const Submission& handed_in, const Rubric& rubric, const Judge
     for (const PlatformFile& file : kPlatformFiles) record.files.emplace_back(file.name);
     if (options.embed) record.files.emplace_back(kOneFile);
     check_writable_beside(options.out, record.files);
-    const PlaceLock lock                  = PlaceLock::inside(options.out);
-    const auto start                      = std::chrono::steady_clock::now();
+    const PlaceLock lock = PlaceLock::inside(options.out);
+    const Stopwatch start;
     const std::vector<ChosenScene> scenes = chosen_scenes(rubric.scenes);
     std::vector<Compared> all;
     try {
@@ -236,7 +236,7 @@ GradeRecord judge(const Submission& handed_in, const Rubric& rubric, const Judge
     for (Compared& scene : all) scene.why = without_folder(scene.why, handed_in.folder);
     end_idle_programs();
     grade(record, rubric.record, all);
-    record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    record.seconds = start.seconds();
     for (const Compared& scene : all)
         if (!scene.method.empty()) record.scenes.push_back(scene.folder);
     write_platform_files(record);

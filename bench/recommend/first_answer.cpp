@@ -3,17 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/record/field.h"
 #include "umbra/bench/sweep/bounds.h"
+#include "umbra/core/base/stopwatch.h"
 
 namespace umbra {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Of n points none of which is wrong, a share of 3 / n may be (upper_share); half of a picture's points may have no
 /// surface, or one that faces away from the light.
@@ -29,12 +27,9 @@ bool depends_on_the_size(const Metric& metric) {
 class FirstSearch {
 public:
     FirstSearch(SceneLab& coarse, SceneLab& whole, const RecommendOptions& options, double seconds)
-        : coarse_(coarse),
-          whole_(whole),
-          options_(options),
-          until_(Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))) {}
+        : coarse_(coarse), whole_(whole), options_(options), seconds_(seconds) {}
 
-    [[nodiscard]] bool is_over() const { return Clock::now() >= until_; }
+    [[nodiscard]] bool is_over() const { return start_.seconds() >= seconds_; }
     [[nodiscard]] const std::optional<FirstAnswer>& best() const { return best_; }
 
     /// Of what earlier questions have looked at, up to an answer.
@@ -89,7 +84,8 @@ private:
 
     SceneLab &coarse_, &whole_;
     const RecommendOptions& options_;
-    Clock::time_point until_;
+    double seconds_;
+    Stopwatch start_;
     std::optional<FirstAnswer> best_;
 };
 
@@ -110,26 +106,22 @@ Size first_size(const Size& whole, std::span<const Limit> limits) {
 std::optional<FirstAnswer> first_answer(SceneLab& coarse, SceneLab& whole, const RecommendOptions& options,
                                         double seconds) {
     FirstSearch search(coarse, whole, options, seconds);
-    std::vector<Family> all = families(options.choices);
+    const std::vector<Family> all = families(options.choices);
     search.look_at_kept(all);
     const bool is_kept = search.best().has_value();
     struct Line {
-        Family family;
-        bool other;            ///< than the reference
-        double last      = 0;  ///< what the setting before the next one costs
-        std::size_t next = 0;
+        std::span<const MethodChoice> left;
+        double last = 0;  ///< what the setting before the first of these costs
     };
     std::vector<Line> lines;
-    for (Family& family : all) {
-        const bool other = !family.settings.front().info->reference;
-        lines.push_back({std::move(family), other});
-    }
+    for (const Family& family : all) lines.push_back({family.settings});
     // Always where the last one was cheapest: what costs a lot is looked at if nothing that costs little is an answer.
     while (!is_kept && !lines.empty() && !search.is_over()) {
-        const auto line = std::ranges::min_element(lines, {}, [](const Line& l) { return std::pair(l.other, l.last); });
-        const auto cost = search.look_at(line->family.settings[line->next]);
-        if (cost && ++line->next < line->family.settings.size())
-            line->last = *cost;
+        const auto line = std::ranges::min_element(
+            lines, {}, [](const Line& l) { return std::pair(!l.left.front().info->reference, l.last); });
+        const auto cost = search.look_at(line->left.front());
+        if (cost && line->left.size() > 1)
+            *line = {line->left.subspan(1), *cost};
         else
             lines.erase(line);
     }

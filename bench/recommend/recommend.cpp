@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -14,6 +13,7 @@
 #include "umbra/bench/sweep/metrics.h"
 #include "umbra/bench/sweep/sweep_record.h"
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/stopwatch.h"
 
 namespace umbra {
 namespace {
@@ -77,19 +77,19 @@ public:
         result_.passed_over.clear();
         result_.unasked.clear();
         const auto method_of = [](const Line& l) { return l.family->settings.front().info; };
-        const auto start     = std::chrono::steady_clock::now();
-        const double before  = result_.candidates.empty() ? look_at_kept() : 0;  // behind a drop: anew
+        const Stopwatch start;
+        const double before = result_.candidates.empty() ? look_at_kept() : 0;  // behind a drop: anew
         if (options_.first && known(*options_.first) == kNone) look(*options_.first);
         while (!lines.empty()) {
             const auto line = std::ranges::min_element(
                 lines, {}, [&](const Line& l) { return std::pair(!method_of(l)->reference, l.ran_ms); });
             const std::vector<MethodChoice>& settings = line->family->settings;
             const std::span left                      = std::span(settings).subspan(line->next);
-            const auto begin                          = std::chrono::steady_clock::now();
-            const std::size_t k                       = known(left.front());
-            const bool is_late                        = has_cheap_answer() ? before + since(start) > options_.seconds
-                                                                           : since(start) > kPatience * options_.seconds;
-            bool goes_on                              = false;
+            const Stopwatch begin;
+            const std::size_t k = known(left.front());
+            const bool is_late  = has_cheap_answer() ? before + start.seconds() > options_.seconds
+                                                     : start.seconds() > kPatience * options_.seconds;
+            bool goes_on        = false;
             if (k == kNone && is_late) {
                 result_.unasked.insert(result_.unasked.end(), left.begin(), left.end());
             } else if (const auto by = passed_over_by(left.front())) {
@@ -103,11 +103,11 @@ public:
                         other.ran_ms = other.ran_ms > 0 ? std::min(other.ran_ms, line->ran_ms) : line->ran_ms;
                 goes_on = true;
             }
-            if (k == kNone && !is_late) small_.spend_on(left.front(), since(begin));
+            if (k == kNone && !is_late) small_.spend_on(left.front(), begin.seconds());
             if (!goes_on) lines.erase(line);
         }
         result_.looked_at = result_.candidates.size();
-        search_took_ += since(start);
+        search_took_ += start.seconds();
     }
 
     /// Each candidate gets its price as its cost. Those that may be the answer get the median of rounds in turns, and so
@@ -157,6 +157,12 @@ public:
         return std::nullopt;
     }
 
+    /// Whether it is within the limits, and was not dropped.
+    [[nodiscard]] bool is_answer(std::size_t k) const {
+        return result_.candidates[k].within(options_.limits) &&
+               std::ranges::find(result_.dropped, k, &Dropped::candidate) == result_.dropped.end();
+    }
+
     /// Its bounds, also where some view is beyond a limit.
     const Candidate& looked_at_whole(std::size_t candidate) {
         Candidate& c = result_.candidates[candidate];
@@ -183,9 +189,9 @@ public:
             while (!c.is_whole && !is_long(c.choice) && steps_took_ < may_take) {
                 const auto least = c.least_bound(options_.limits, 0);
                 if (!least || (!steps.empty() && *least > kStep * steps.back().error)) break;
-                const auto start = std::chrono::steady_clock::now();
+                const Stopwatch start;
                 look_on(c, static_cast<int>(c.views.size()) + 1, false);
-                steps_took_ += since(start);
+                steps_took_ += start.seconds();
                 if (!c.unfit.empty()) break;
             }
             const auto error = c.bounds[0];
@@ -219,11 +225,6 @@ private:
         return false;
     }
 
-    [[nodiscard]] bool is_answer(std::size_t k) const {
-        return result_.candidates[k].within(options_.limits) &&
-               std::ranges::find(result_.dropped, k, &Dropped::candidate) == result_.dropped.end();
-    }
-
     static constexpr std::size_t kNone = ~std::size_t{0};
     [[nodiscard]] std::size_t known(const MethodChoice& choice) const {
         for (std::size_t k = 0; k < result_.candidates.size(); ++k)
@@ -246,8 +247,7 @@ private:
 
     std::size_t look(const MethodChoice& choice) {
         if (options_.progress) options_.progress(choice.text());
-        Candidate c{choice, {}, false, {}, {}, {}, {}, {}, {}};
-        c.bounds.resize(options_.limits.size());
+        Candidate c{.choice = choice, .bounds = std::vector<std::optional<double>>(options_.limits.size())};
         look_on(c, options_.views, true);
         result_.candidates.push_back(std::move(c));
         return result_.candidates.size() - 1;
@@ -335,10 +335,6 @@ private:
         return times ? std::optional(price_ms(options_.workload, *times, more_points(small_, whole_))) : std::nullopt;
     }
 
-    [[nodiscard]] static double since(std::chrono::steady_clock::time_point start) {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    }
-
     /// Whether only rounding can make it err.
     [[nodiscard]] bool is_by_proof(const MethodChoice& choice) const {
         try {
@@ -370,17 +366,17 @@ std::optional<std::size_t> nearest_of(Search& search, std::vector<std::size_t> t
     return nearest;
 }
 
+/// Whether the parameter's sweep goes from large numbers to small ones, which cost more.
+bool falls(const Parameter& swept) {
+    const std::string_view sweep = swept.sweep;
+    return std::stod(std::string(sweep)) > std::stod(std::string(sweep.substr(sweep.rfind('|') + 1)));
+}
+
 }  // namespace
 
 Limit parse_limit(const std::string& text) {
     const LimitText limit = parse_limit_text(text, "METRIC=LIMIT, as rmse=0.01");
     return {&find_metric(limit.metric), limit.most};
-}
-
-/// Whether the parameter's sweep goes from large numbers to small ones, which cost more.
-bool falls(const Parameter& swept) {
-    const std::string_view sweep = swept.sweep;
-    return std::stod(std::string(sweep)) > std::stod(std::string(sweep.substr(sweep.rfind('|') + 1)));
 }
 
 std::vector<Family> families(std::span<const MethodChoice> choices) {
@@ -473,9 +469,7 @@ Recommendation recommend(SceneLab& small, SceneLab& whole, const RecommendOption
         for (std::size_t k = 0; k < r.candidates.size(); ++k) {
             if (!r.candidates[k].cost) continue;
             timed.push_back(k);
-            if (r.candidates[k].within(options.limits) &&
-                std::ranges::find(r.dropped, k, &Dropped::candidate) == r.dropped.end())
-                within.push_back(k);
+            if (search.is_answer(k)) within.push_back(k);
         }
         std::ranges::stable_sort(timed, {}, [&](std::size_t k) { return *r.candidates[k].cost; });
         // One run, alone, is no cost that a median of turns could be ranked by.
@@ -531,8 +525,7 @@ std::vector<TriedMethod> tried_methods(const Recommendation& r, const RecommendO
     std::vector<TriedMethod> all;
     const auto of = [&](const MethodInfo* info) -> TriedMethod& {
         const auto found = std::ranges::find(all, info, &TriedMethod::info);
-        return found != all.end() ? *found
-                                  : all.emplace_back(TriedMethod{.info = info, .candidate = {}, .outdone_by = {}});
+        return found != all.end() ? *found : all.emplace_back(TriedMethod{.info = info});
     };
     for (const MethodChoice& choice : options.choices) ++of(choice.info).settings;
     // The first of these that differs decides: fit, timed, within the limits, then the cost, or how far it misses.

@@ -55,14 +55,14 @@ struct Beyond {
 /// One setting that was looked at.
 struct Candidate {
     MethodChoice choice;
-    std::vector<Cell> views;                    ///< cells from view 0 on
-    bool is_whole = false;                      ///< views are all that are chosen on
-    std::vector<std::optional<double>> bounds;  ///< [limit]; nothing where it is not whole
-    std::optional<Beyond> beyond;               ///< the first such view; behind it none was needed
-    std::string unfit;                          ///< why it is no candidate at all; empty where it is one
-    std::vector<double> costs;                  ///< ms a frame, one a round; empty where it took part in none
-    std::optional<double> price;                ///< ms a frame by one run, alone
-    std::optional<double> cost;                 ///< by the medians of the phases; of one run where there are no rounds
+    std::vector<Cell> views{};                    ///< cells from view 0 on
+    bool is_whole = false;                        ///< views are all that are chosen on
+    std::vector<std::optional<double>> bounds{};  ///< [limit]; nothing where it is not whole
+    std::optional<Beyond> beyond{};               ///< the first such view; behind it none was needed
+    std::string unfit{};                          ///< why it is no candidate at all; empty where it is one
+    std::vector<double> costs{};                  ///< ms a frame, one a round; empty where it took part in none
+    std::optional<double> price{};                ///< ms a frame by one run, alone
+    std::optional<double> cost{};  ///< by the medians of the phases; of one run where there are no rounds
     [[nodiscard]] bool within(std::span<const Limit> limits) const;
     /// A bound, or what it is no less than by the views that are there; nothing where neither is known.
     [[nodiscard]] std::optional<double> least_bound(std::span<const Limit> limits, std::size_t limit) const;
@@ -103,10 +103,11 @@ struct TriedMethod {
     std::size_t settings    = 0;
     std::size_t looked_at   = 0;
     std::size_t passed_over = 0;
-    bool within             = false;       ///< one of them is within the limits
-    std::optional<std::size_t> candidate;  ///< the cheapest within the limits, else the one that misses by the smallest
-                                           ///< factor, else one that is unfit
-    std::optional<std::size_t> outdone_by;  ///< index into passed_over, where none was looked at: the cheapest of them
+    bool within             = false;  ///< one of them is within the limits
+    /// The cheapest within the limits, else the one that misses by the smallest factor, else one that is unfit.
+    std::optional<std::size_t> candidate{};
+    /// Index into passed_over, where none was looked at: the cheapest of them.
+    std::optional<std::size_t> outdone_by{};
 };
 
 /// A step of the staircase: down to the bound `error` of the first limit's metric, this one is the cheapest of those that

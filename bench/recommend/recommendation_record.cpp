@@ -16,12 +16,8 @@ BeyondRecord beyond_record(const Beyond& beyond) {
 }
 
 CandidateRecord candidate_record(const Candidate& c, const RecommendOptions& options) {
-    CandidateRecord record{.method    = c.choice.text(),
-                           .cost      = c.cost,
-                           .views     = c.views.size(),
-                           .errors    = {},
-                           .beyond    = {},
-                           .undefined = most_undefined(c.views)};
+    CandidateRecord record{
+        .method = c.choice.text(), .cost = c.cost, .views = c.views.size(), .undefined = most_undefined(c.views)};
     for (std::size_t k = 0; k < options.limits.size(); ++k) {
         const Limit& limit                = options.limits[k];
         record.errors(limit.metric->name) = {
@@ -41,7 +37,7 @@ std::uint64_t held(const Metric& metric, const std::vector<Cell>& cells, double 
 
 ChosenRecord chosen_record(const Recommendation& r, const RecommendOptions& options) {
     const Candidate& chosen = r.candidates[*r.chosen];
-    ChosenRecord record{.candidate = candidate_record(chosen, options), .held_out = {}};
+    ChosenRecord record{.candidate = candidate_record(chosen, options)};
     HeldOutRecord& held_out = record.held_out;
     held_out.views          = r.held_out.size();
     held_out.tried          = r.dropped.size() + 1;
@@ -60,10 +56,7 @@ TriedMethodRecord method_record(const TriedMethod& m, const Recommendation& r, c
                              .settings    = m.settings,
                              .looked_at   = m.looked_at,
                              .passed_over = m.passed_over,
-                             .within      = m.within,
-                             .best        = {},
-                             .factor      = {},
-                             .unfit       = {}};
+                             .within      = m.within};
     if (!m.candidate) return record;
     const Candidate& c = r.candidates[*m.candidate];
     record.best        = candidate_record(c, options);
@@ -78,8 +71,6 @@ RivalRecord rival_record(const Rival& rival, const Recommendation& r, const Reco
     const Ratio& ratio = rival.ratio;
     RivalRecord record{.candidate  = candidate_record(r.candidates[rival.candidate], options),
                        .cost_ratio = {.median   = ratio.median,
-                                      .low      = {},
-                                      .high     = {},
                                       .rounds   = static_cast<std::uint64_t>(ratio.pairs),
                                       .coverage = ratio.coverage,
                                       .differs  = rival.differs}};
@@ -137,12 +128,8 @@ RecommendationRecord recommendation_record(const Recommendation& r, const Recomm
 }
 
 FirstAnswerRecord first_answer_record(const FirstAnswer& a, const RecommendOptions& options) {
-    FirstAnswerRecord record{.method  = a.choice.text(),
-                             .cost    = a.cost,
-                             .bounds  = {},
-                             .size    = size_record(a.size),
-                             .views   = a.views,
-                             .in_time = a.in_time};
+    FirstAnswerRecord record{
+        .method = a.choice.text(), .cost = a.cost, .size = size_record(a.size), .views = a.views, .in_time = a.in_time};
     for (std::size_t k = 0; k < options.limits.size(); ++k) record.bounds(options.limits[k].metric->name) = a.bounds[k];
     return record;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/recommend/recommend.h"
@@ -11,7 +12,7 @@
 namespace umbra {
 namespace {
 
-std::string counted_views(std::size_t n) { return counted(static_cast<double>(n), "view"); }
+std::string counted_views(std::integral auto n) { return counted(static_cast<double>(n), "view"); }
 
 /// "1 view that was chosen on", "5 views that were chosen on", and what follows.
 std::string chosen_on(std::size_t views, std::string_view one, std::string_view more) {
@@ -142,7 +143,7 @@ std::string methods_in_words(const Recommendation& r, const RecommendOptions& op
     }
     std::string text = fmt::format(
         "  Every method, by its cheapest setting within the limits, or else its nearest, with bounds from {}:\n",
-        counted_views(static_cast<std::size_t>(options.views)));
+        counted_views(options.views));
     for (const auto& [name, what] : lines) text += fmt::format("    {:<{}}  {}\n", name, widest, what);
     return text;
 }
@@ -157,9 +158,8 @@ std::string noise_in_words(const Recommendation& r, const RecommendOptions& opti
 
 std::string staircase_in_words(const Recommendation& r, const RecommendOptions& options) {
     if (r.staircase.empty()) return {};
-    std::string text =
-        fmt::format("  If {} may be at most E, the cheapest that was looked at, by bounds from {}:\n",
-                    options.limits.front().metric->name, counted_views(static_cast<std::size_t>(options.views)));
+    std::string text = fmt::format("  If {} may be at most E, the cheapest that was looked at, by bounds from {}:\n",
+                                   options.limits.front().metric->name, counted_views(options.views));
     for (std::size_t k = 0; k < r.staircase.size(); ++k) {
         const Step& step        = r.staircase[k];
         const std::string range = k == 0 ? fmt::format("E from {:.3g}", step.error)
@@ -178,7 +178,7 @@ std::string recommendation_text(const Recommendation& r, const RecommendOptions&
         text = fmt::format(
             "Nothing is chosen: times vary by {:.0f} %, and these are within the limits in {} and as cheap as "
             "one another, as far as can be told:\n",
-            std::ceil(100 * r.noise_bar), counted_views(static_cast<std::size_t>(options.views)));
+            std::ceil(100 * r.noise_bar), counted_views(options.views));
         for (const std::size_t k : r.undecided)
             text +=
                 fmt::format("  {}: {:.3f} ms a frame with {}\n{}", r.candidates[k].choice.text(), *r.candidates[k].cost,
@@ -215,7 +215,7 @@ std::string recommendation_text(const Recommendation& r, const RecommendOptions&
     text +=
         fmt::format("  {} of {} {} looked at, in up to {} of {} x {} pixels each{}.\n", r.looked_at,
                     counted(static_cast<double>(r.settings), "setting"), r.looked_at == 1 ? "was" : "were",
-                    counted_views(static_cast<std::size_t>(options.views)), r.size.width, r.size.height,
+                    counted_views(options.views), r.size.width, r.size.height,
                     r.looked_at + r.unasked.size() < r.settings ? "; others cost more than one within the limits" : "");
     if (!r.unasked.empty())
         text += fmt::format("  {} {} not looked at in time; with --seconds 1000 they are.\n",

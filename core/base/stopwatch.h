@@ -12,6 +12,7 @@ public:
     [[nodiscard]] double ms() const {
         return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
     }
+    [[nodiscard]] double seconds() const { return ms() / 1000; }
 
 private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
