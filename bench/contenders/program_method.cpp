@@ -74,20 +74,6 @@ struct Contender final : OutsideMethod {
     }
 };
 
-Json settings_of(const Settings& settings) {
-    Json all = Json::object();
-    for (const Parameter& p : settings.parameters()) switch (p.type) {
-            case Parameter::Type::boolean: all[std::string(p.name)] = settings.value(p.name) != 0; break;
-            case Parameter::Type::integer:
-                all[std::string(p.name)] = static_cast<std::int64_t>(settings.value(p.name));
-                break;
-            case Parameter::Type::real: all[std::string(p.name)] = settings.value(p.name); break;
-            case Parameter::Type::choice:
-            case Parameter::Type::text: all[std::string(p.name)] = settings.text(p); break;
-        }
-    return all;
-}
-
 /// One scene is one file (and frame) to the clock of the program.
 std::string key_of(const Json& settings, const Scene& scene) {
     return fmt::format("{}#{}#{}#{}", settings.dump(), scene.source, scene.name, scene.frame);
@@ -105,7 +91,8 @@ public:
 
 class Program final : public Method {
 public:
-    Program(Contender& contender, const Settings& settings) : contender_(contender), settings_(settings_of(settings)) {}
+    Program(Contender& contender, const Settings& settings)
+        : contender_(contender), settings_(to_record(parameter_records(settings))) {}
     ~Program() override {
         if (ready_) contender_.give_back(std::move(ready_));
     }
