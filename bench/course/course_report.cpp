@@ -130,7 +130,7 @@ CourseScenes compare_course(const Course& course, CompareOptions options, std::v
 
 Course read_course(const fs::path& file, const FindScene& find) {
     if (!fs::is_regular_file(file)) throw InputError(fmt::format("{}: is not there, or is no file", file.string()));
-    Course course{.file = file};
+    Course course;
     const Field root           = parse_json(bytes_of(file), file.string());
     const CourseRecord& record = course.record = from_strict_record<CourseRecord>(root);
     if (record.chapters.empty()) root["chapters"].refuse("a list with at least one chapter");
@@ -141,11 +141,7 @@ Course read_course(const fs::path& file, const FindScene& find) {
             root["language"].refuse("a language of this program, or a folder that holds texts.json");
         course.language = known ? *known : add_language(folder);
     }
-    try {
-        if (!record.size.empty()) course.size = parse_size(record.size);
-    } catch (const UsageError& e) {
-        root["size"].refuse(fmt::format("a size ({})", e.what()));
-    }
+    course.size = size_of(root["size"]);
     check_methods(root["methods"]);
     for (const Field& chapter : root["chapters"].items()) {
         check_methods(chapter["methods"]);

@@ -55,7 +55,6 @@ DESCRIBE(CourseRecord) {
 
 struct Course {
     CourseRecord record{};
-    std::filesystem::path file{};
     Language language = Language::english;
     Size size{};
     std::vector<std::vector<std::filesystem::path>> scenes{};  ///< [chapter]

@@ -77,12 +77,10 @@ GradedSceneRecord graded(const RubricItemRecord& item, const Compared& scene) {
     const MethodRecord* method = scene.record();
     const bool failed = method == nullptr || method->failed, refused = !failed && method->serves.how == "not";
     found.unanswered = failed;
+    if (failed || refused) found.why = scene.why_not();
     if (item.of == "failed" || item.of == "refused") {
         found.figure = (item.of == "failed" ? failed : refused) ? 1 : 0;
-        if (failed) found.why = method != nullptr ? method->failed->message : scene.why;
-        if (refused) found.why = method->serves.why;
     } else if (failed || refused) {
-        found.why    = failed ? (method != nullptr ? method->failed->message : scene.why) : method->serves.why;
         found.credit = 0;
         return found;
     } else if (const auto figure = figure_of(scene.results, *method, item.of, item.against)) {
@@ -139,6 +137,12 @@ std::string sentence_of(const GradedItemRecord& item, const RubricItemRecord& as
 const MethodRecord* Compared::record() const {
     const auto found = std::ranges::find(results.methods, method, &MethodRecord::id);
     return found == results.methods.end() ? nullptr : &*found;
+}
+
+std::string Compared::why_not() const {
+    const MethodRecord* answers = record();
+    if (answers == nullptr) return why;
+    return answers->failed ? answers->failed->message : answers->serves.why;
 }
 
 std::optional<Figure> figure_of(const Results& results, const MethodRecord& method, const std::string& of,

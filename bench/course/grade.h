@@ -91,6 +91,8 @@ struct Compared {
     std::string why{};     ///< why not
 
     [[nodiscard]] const MethodRecord* record() const;  ///< null where it has no answers
+    /// What it threw, why it does not serve the scene, or why it has no answers.
+    [[nodiscard]] std::string why_not() const;
 };
 
 /// The figure that a rubric names, under the light where it is largest; nothing where no light tells. `against`: of time.

@@ -84,17 +84,12 @@ json scenes_view(const GradeRecord& grade, const std::vector<Compared>& scenes, 
     for (std::size_t s = 0; s < scenes.size(); ++s) {
         const fs::path page        = files[s].scene().page.parent_path();
         const MethodRecord* method = scenes[s].record();
-        std::string finding        = scenes[s].why;
-        if (method != nullptr)
-            finding = method->failed    ? method->failed->message
-                      : serves(*method) ? finding_of(*method)
-                                        : method->serves.why;
         if (method != nullptr && (method->failed || !serves(*method))) method = nullptr;  // there is nothing to show
         all.push_back(
             {{"id", fmt::format("scene-{}", s + 1)},
              {"title", scenes[s].folder},
              {"href", scenes[s].method.empty() ? "" : url(fs::path(scenes[s].folder) / "index.html")},
-             {"finding", finding},
+             {"finding", method != nullptr ? finding_of(*method) : scenes[s].why_not()},
              {"pair", method != nullptr ? slider_view(files[s], method, page) : json(false)},
              {"classes", method != nullptr ? class_pictures(grade, scenes[s], *method, files[s]) : json(false)}});
     }

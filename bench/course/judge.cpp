@@ -87,11 +87,6 @@ std::string missing_word(const std::vector<std::string>& run, const fs::path& fo
     return {};
 }
 
-const std::vector<std::string>& run_of(const Rubric& rubric) {
-    static const std::vector<std::string> by_default{"./run"};
-    return rubric.record.run.empty() ? by_default : rubric.record.run;
-}
-
 /// What answers on the scenes.
 struct Asked {
     std::optional<MethodChoice> method{};  ///< on every scene
@@ -109,8 +104,9 @@ struct Asked {
 Asked asked_of(const Submission& handed_in, const Rubric& rubric, std::span<const ChosenScene> scenes, bool protect,
                GradeRecord& record) {
     if (handed_in.method) return {.method = handed_in.method};
-    const std::vector<std::string>& run = run_of(rubric);
-    const std::string missing           = missing_word(run, handed_in.folder);
+    std::vector<std::string> run = rubric.record.run;
+    if (run.empty()) run = {"./run"};
+    const std::string missing = missing_word(run, handed_in.folder);
     if (!missing.empty()) {
         const auto answered = [&](const ChosenScene& scene) {
             return !answers_in(handed_in.folder, scene.name).empty();

@@ -84,9 +84,17 @@ void check_methods(const Field& names) {
     for (const Field& name : names.items()) check_method(name);
 }
 
+Size size_of(const Field& size) {
+    try {
+        return size.text().empty() ? Size{} : parse_size(size.text());
+    } catch (const UsageError& e) {
+        size.refuse(fmt::format("a size ({})", e.what()));
+    }
+}
+
 Rubric read_rubric(const fs::path& file, const FindScene& find) {
     if (!fs::is_regular_file(file)) throw InputError(fmt::format("{}: is not there, or is no file", file.string()));
-    Rubric rubric{.file = file, .text = bytes_of(file)};
+    Rubric rubric{.text = bytes_of(file)};
     const Field root     = parse_json(rubric.text, file.string());
     RubricRecord& record = rubric.record = from_strict_record<RubricRecord>(root);
     if (record.scenes.empty()) root["scenes"].refuse("a list with at least one scene");
@@ -97,11 +105,7 @@ Rubric read_rubric(const fs::path& file, const FindScene& find) {
     for (const auto& [limit, value] :
          {std::pair{&limits.answer_s, 60.0}, {&limits.scene_s, 300.0}, {&limits.memory_mib, 4096.0}})
         if (!std::isfinite(*limit)) *limit = value;
-    try {
-        if (!record.size.empty()) rubric.size = parse_size(record.size);
-    } catch (const UsageError& e) {
-        root["size"].refuse(fmt::format("a size ({})", e.what()));
-    }
+    rubric.size   = size_of(root["size"]);
     rubric.scenes = scenes_beside(root["scenes"], file, find);
     check_methods(root["methods"]);
     std::set<std::string> names;

@@ -72,8 +72,7 @@ DESCRIBE(RubricRecord) {
 
 struct Rubric {
     RubricRecord record{};
-    std::filesystem::path file{};  ///< empty: the one that this program has
-    std::string text{};            ///< its bytes
+    std::string text{};  ///< its bytes
     std::vector<std::filesystem::path> scenes{};
     Size size{};
 };
@@ -84,6 +83,9 @@ struct Rubric {
 
 /// Throws InputError with the position of a name that is no method's.
 void check_methods(const Field& names);
+
+/// "WIDTHxHEIGHT", or the scenes' own where it is not there. Throws InputError with its position.
+[[nodiscard]] Size size_of(const Field& size);
 
 /// Reads and checks it: names of figures, methods and scenes, ranges, what an item needs. Throws InputError with the
 /// file and the position.
