@@ -57,8 +57,7 @@ static int is_occluded(enum fault fault, const umbra_scene* scene, size_t own, v
     for (size_t t = 0; t < scene->triangles; ++t) {
         if ((t == own && fault != BIAS_OF_THE_WRONG_SIGN) || !scene->blocks[t]) continue;
         if (fault == ONE_TRIANGLE_IN_THREE && t % 3 != 0) continue;
-        if (!occludes(scene, t, p, d, endless)) continue;
-        return 1;
+        if (occludes(scene, t, p, d, endless)) return 1;
     }
     return 0;
 }
@@ -73,10 +72,8 @@ static int faulty_visibility(const umbra_question* question, size_t begin, size_
     (void)why;
     for (size_t i = begin; i < end; ++i) {
         if (!question->asked[i]) continue;
-        const size_t own = points->triangle[i];
-        const double u = points->u[i], v = points->v[i];
-        const vec a = corner(scene, own, 0), b = corner(scene, own, 1), c = corner(scene, own, 2);
-        const vec p           = plus(plus(plus((vec){0, 0, 0}, 1 - u - v, a), u, b), v, c);
+        const size_t own      = points->triangle[i];
+        const vec p           = point(scene, points, i);
         const vec n           = {points->nx[i], points->ny[i], points->nz[i]};
         const uint64_t number = fault == ONE_SEED_FOR_ALL ? 0 : (uint64_t)(points->number ? points->number[i] : i);
         uint64_t state        = ((uint64_t)set[EXERCISE_SEED].number << 40) + (number << 16);

@@ -187,7 +187,7 @@ struct Built {
     Vector centre, half;       ///< of the bounds
     std::vector<Vector> at;    ///< of each vertex, from the centre, as the buffer has it
     Buffer vertices, corners;  ///< those of the triangles that block
-    Named<DeleteArray> array;
+    Named<glDeleteVertexArrays> array;
     GLsizei corner_count = 0;
 
     // Edges, for volumes.
@@ -203,8 +203,7 @@ struct Built {
         const umbra_scene& s = *scene;
         const bool volumes   = wants_volumes(question);
         const Vector low = vector_of(s.low), high = vector_of(s.high);
-        if (s.triangles > 0) centre = 0.5 * low - -0.5 * high;
-        if (s.triangles > 0) half = 0.5 * (high - low);
+        if (s.triangles > 0) centre = 0.5 * low - -0.5 * high, half = 0.5 * (high - low);
         at.reserve(s.vertices);
         std::vector<std::array<float, 4>> data;
         for (int end = 0; end < (volumes ? 2 : 1); ++end)
@@ -283,16 +282,12 @@ struct Looked {
             see(built, p);
             return;
         }
-        std::vector<float> data(6 * p.count);
+        std::vector<float> data;
+        data.reserve(6 * p.count);
         for (std::size_t i = 0; i < p.count; ++i) {
             const Vector at = Vector{p.x[i], p.y[i], p.z[i]} - built.centre;
-            const std::array<float, 6> one{static_cast<float>(at.x),
-                                           static_cast<float>(at.y),
-                                           static_cast<float>(at.z),
-                                           p.nx[i],
-                                           p.ny[i],
-                                           p.nz[i]};
-            std::ranges::copy(one, data.begin() + static_cast<std::ptrdiff_t>(6 * i));
+            for (const double x : {at.x, at.y, at.z}) data.push_back(static_cast<float>(x));
+            data.insert(data.end(), {p.nx[i], p.ny[i], p.nz[i]});
         }
         points.store(data);
     }

@@ -144,8 +144,8 @@ struct Current {
     Current& operator=(const Current&) = delete;
 };
 
-/// An object of OpenGL; a `Current` is around its life's ends.
-template <typename Delete>
+/// An object of OpenGL and the function that deletes it; a `Current` is around its life's ends.
+template <auto& Delete>
 class Named {
 public:
     GLuint name                    = 0;
@@ -153,23 +153,11 @@ public:
     Named(const Named&)            = delete;
     Named& operator=(const Named&) = delete;
     ~Named() {
-        if (name != 0) Delete{}(name);
+        if (name != 0) Delete(1, &name);
     }
 };
-struct DeleteBuffer {
-    void operator()(GLuint n) const { glDeleteBuffers(1, &n); }
-};
-struct DeleteTexture {
-    void operator()(GLuint n) const { glDeleteTextures(1, &n); }
-};
-struct DeleteFrame {
-    void operator()(GLuint n) const { glDeleteFramebuffers(1, &n); }
-};
-struct DeleteArray {
-    void operator()(GLuint n) const { glDeleteVertexArrays(1, &n); }
-};
 
-struct Buffer : Named<DeleteBuffer> {
+struct Buffer : Named<glDeleteBuffers> {
     template <typename T>
     void store(const std::vector<T>& data) {
         glCreateBuffers(1, &name);
@@ -187,8 +175,8 @@ inline void finish() {
 
 /// A texture to draw depths into.
 struct Target {
-    Named<DeleteTexture> texture;
-    Named<DeleteFrame> frame;
+    Named<glDeleteTextures> texture;
+    Named<glDeleteFramebuffers> frame;
 
     void make(GLenum kind, GLenum format, GLsizei width, GLsizei height) {
         GLint most = 0;

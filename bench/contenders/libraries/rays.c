@@ -31,6 +31,13 @@ static vec corner(const umbra_scene* scene, size_t triangle, int k) {
     return vec_of(scene->positions + 3 * (size_t)scene->corners[3 * triangle + (size_t)k]);
 }
 
+static vec point(const umbra_scene* scene, const umbra_points* points, size_t i) {
+    const size_t own = points->triangle[i];
+    const double u = points->u[i], v = points->v[i];
+    const vec a = corner(scene, own, 0), b = corner(scene, own, 1), c = corner(scene, own, 2);
+    return plus(plus(plus((vec){0, 0, 0}, 1 - u - v, a), u, b), v, c);
+}
+
 /* Whether the triangle lies between p and p + d; d is infinitely long where there is no light at its end. */
 static int occludes(const umbra_scene* scene, size_t triangle, vec p, vec d, int endless) {
     const vec a = corner(scene, triangle, 0);
@@ -76,10 +83,8 @@ static int visibility(const umbra_question* question, size_t begin, size_t end, 
     for (size_t i = begin; i < end; ++i) {
         if (!question->asked[i]) continue;
         const size_t own = points->triangle[i];
-        const double u = points->u[i], v = points->v[i];
-        const vec a = corner(scene, own, 0), b = corner(scene, own, 1), c = corner(scene, own, 2);
-        const vec p = plus(plus(plus((vec){0, 0, 0}, 1 - u - v, a), u, b), v, c);
-        const vec n = {points->nx[i], points->ny[i], points->nz[i]};
+        const vec p      = point(scene, points, i);
+        const vec n      = {points->nx[i], points->ny[i], points->nz[i]};
         uint64_t state =
             ((uint64_t)set[SEED].number << 40) + ((uint64_t)(points->number ? points->number[i] : i) << 16);
         int seen = 0;
