@@ -114,7 +114,7 @@ std::optional<FirstAnswer> first_answer(SceneLab& coarse, SceneLab& whole, const
         double last = 0;  ///< what the setting before the first of these costs
     };
     std::vector<Line> lines;
-    for (const Family& family : all) lines.push_back({family.settings});
+    for (const Family& family : all) lines.push_back({family});
     // Always where the last one was cheapest: what costs a lot is looked at if nothing that costs little is an answer.
     while (!is_kept && !lines.empty() && !search.is_over()) {
         const auto line = std::ranges::min_element(

@@ -57,9 +57,8 @@ public:
         result_.size = small.size();
         families_    = families(options.choices);
         std::ranges::stable_sort(families_, {}, [&](const Family& f) {
-            return std::pair(!f.settings.front().info->reference, !is_by_proof(f.settings.front()));
+            return std::pair(!f.front().info->reference, !is_by_proof(f.front()));
         });
-        for (const Family& family : families_) result_.settings += family.settings.size();
     }
 
     /// The settings that may be the answer, of each family those up to the first within the limits, and the reference,
@@ -68,23 +67,22 @@ public:
     /// for an earlier question comes before all others, and the time that it took is spent.
     void look_at_families() {
         struct Line {
-            const Family* family;
-            std::size_t next = 0;
-            double ran_ms    = 0;  ///< the setting before the next one, or the fastest of the method where none did
+            std::span<const MethodChoice> left;
+            bool is_new   = true;  ///< none of its family was looked at
+            double ran_ms = 0;  ///< the setting before the first of these, or the fastest of the method where it is new
         };
         std::vector<Line> lines;
-        for (const Family& family : families_) lines.push_back({&family});
+        for (const Family& family : families_) lines.push_back({family});
         result_.passed_over.clear();
         result_.unasked.clear();
-        const auto method_of = [](const Line& l) { return l.family->settings.front().info; };
+        const auto method_of = [](const Line& l) { return l.left.front().info; };
         const Stopwatch start;
         const double before = result_.candidates.empty() ? look_at_kept() : 0;  // behind a drop: anew
         if (options_.first && known(*options_.first) == kNone) look(*options_.first);
         while (!lines.empty()) {
             const auto line = std::ranges::min_element(
                 lines, {}, [&](const Line& l) { return std::pair(!method_of(l)->reference, l.ran_ms); });
-            const std::vector<MethodChoice>& settings = line->family->settings;
-            const std::span left                      = std::span(settings).subspan(line->next);
+            const std::span<const MethodChoice> left = line->left;
             const Stopwatch begin;
             const std::size_t k = known(left.front());
             const bool is_late  = has_cheap_answer() ? before + start.seconds() > options_.seconds
@@ -96,17 +94,15 @@ public:
                 for (const MethodChoice& choice : left)  // each costs more than those before it
                     result_.passed_over.push_back({choice, by->candidate, by->ratio});
             } else if (!is_answer(k == kNone ? look(left.front()) : k) && left.size() > 1) {
-                ++line->next;
-                line->ran_ms = ran_ms(left.front());
+                *line = {left.subspan(1), false, ran_ms(left.front())};
                 for (Line& other : lines)
-                    if (other.next == 0 && method_of(other) == method_of(*line))
+                    if (other.is_new && method_of(other) == method_of(*line))
                         other.ran_ms = other.ran_ms > 0 ? std::min(other.ran_ms, line->ran_ms) : line->ran_ms;
                 goes_on = true;
             }
             if (k == kNone && !is_late) small_.spend_on(left.front(), begin.seconds());
             if (!goes_on) lines.erase(line);
         }
-        result_.looked_at = result_.candidates.size();
         search_took_ += start.seconds();
     }
 
@@ -164,10 +160,9 @@ public:
     }
 
     /// Its bounds, also where some view is beyond a limit.
-    const Candidate& looked_at_whole(std::size_t candidate) {
+    void look_at_whole(std::size_t candidate) {
         Candidate& c = result_.candidates[candidate];
         if (c.unfit.empty()) look_on(c, options_.views, false);
-        return c;
     }
 
     /// By descending error: each step is cheaper than every setting of a smaller bound, by more than the noise bar.
@@ -239,7 +234,7 @@ private:
     double look_at_kept() {
         double spent = 0;
         for (const Family& family : families_)
-            for (const MethodChoice& choice : family.settings) spent += small_.spent_on(choice);
+            for (const MethodChoice& choice : family) spent += small_.spent_on(choice);
         for (const KeptSetting& kept : kept_settings(small_, whole_, families_, options_.workload))
             if (!passed_over_by(kept.choice)) look(kept.choice);
         return spent;
@@ -360,7 +355,7 @@ std::optional<std::size_t> nearest_of(Search& search, std::vector<std::size_t> t
     std::optional<std::size_t> nearest;
     for (const std::size_t k : timed) {
         if (nearest && ratio(k) >= ratio(*nearest)) continue;
-        static_cast<void>(search.looked_at_whole(k));
+        search.look_at_whole(k);
         if (!nearest || ratio(k) < ratio(*nearest)) nearest = k;
     }
     return nearest;
@@ -384,7 +379,7 @@ std::vector<Family> families(std::span<const MethodChoice> choices) {
     for (const MethodChoice& choice : choices) {
         const Parameter* axis = line_of(*choice.info);
         const auto belongs    = [&](const Family& family) {
-            const MethodChoice& other = family.settings.front();
+            const MethodChoice& other = family.front();
             if (axis == nullptr || other.info != choice.info) return false;
             return std::ranges::all_of(choice.settings.parameters(), [&](const Parameter& p) {
                 return p.name == axis->name || choice.settings.text(p) == other.settings.text(p);
@@ -392,17 +387,16 @@ std::vector<Family> families(std::span<const MethodChoice> choices) {
         };
         const auto found = std::ranges::find_if(all, belongs);
         if (found == all.end())
-            all.push_back({axis != nullptr ? std::string(axis->name) : "", {choice}});
+            all.push_back({choice});
         else
-            found->settings.push_back(choice);
+            found->push_back(choice);
     }
     for (Family& family : all) {
-        if (family.settings.size() == 1) family.parameter.clear();
-        if (family.parameter.empty()) continue;
-        const Parameter* axis = line_of(*family.settings.front().info);
+        if (family.size() == 1) continue;
+        const Parameter* axis = line_of(*family.front().info);
         const double sign     = falls(*axis) ? -1 : 1;
-        std::ranges::stable_sort(family.settings, {},
-                                 [&](const MethodChoice& c) { return sign * c.settings.value(family.parameter); });
+        std::ranges::stable_sort(family, {},
+                                 [&](const MethodChoice& c) { return sign * c.settings.value(axis->name); });
     }
     return all;
 }
@@ -448,7 +442,7 @@ std::vector<KeptSetting> kept_settings(SceneLab& small, const SceneLab& whole, s
                                        const Workload& workload) {
     std::vector<KeptSetting> kept;
     for (const Family& family : families)
-        for (const MethodChoice& choice : family.settings) {
+        for (const MethodChoice& choice : family) {
             if (!(small.spent_on(choice) > 0) || !small.has_cell(choice, 0)) continue;
             const std::optional<RunTimes> run = small.price(choice);
             kept.push_back({choice, run ? price_ms(workload, *run, more_points(small, whole)) : 0});

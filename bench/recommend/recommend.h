@@ -39,10 +39,7 @@ struct RecommendOptions {
 
 /// Settings of one method that differ in one number alone, as the parameter's sweep has them: from the cheapest on, each
 /// of which has lower errors than the one before. Other settings are families of one.
-struct Family {
-    std::string parameter;  ///< empty in a family of one
-    std::vector<MethodChoice> settings;
-};
+using Family = std::vector<MethodChoice>;
 [[nodiscard]] std::vector<Family> families(std::span<const MethodChoice> choices);
 
 /// The first view of a setting that is beyond a limit, and so its bound, which is no less than any view.
@@ -119,7 +116,7 @@ struct Step {
 };
 
 struct Recommendation {
-    std::vector<Candidate> candidates;
+    std::vector<Candidate> candidates;    ///< settings whose cells were needed
     std::optional<std::size_t> chosen;    ///< none: no setting is within the limits, or `undecided` has some
     std::vector<Dropped> dropped;         ///< tried before the chosen one on further views, by ascending cost
     std::vector<std::size_t> undecided;   ///< within the limits and, at a noise bar above the most, none cheaper than
@@ -136,8 +133,7 @@ struct Recommendation {
     std::vector<Cell> held_out;           ///< cells of the chosen one in views that it was not chosen on; all within.
                                           ///< None of the reference, which they would compare with itself
     Size size{};                          ///< of the pictures that it was chosen on
-    std::size_t looked_at = 0, settings = 0;  ///< settings whose cells were needed, of all
-    double noise_bar = 0;                     ///< as of Turns
+    double noise_bar = 0;                 ///< as of Turns
 };
 
 /// `small` is the scene of `whole` in pictures of as many points as the limits need (first_size), or `whole` itself.

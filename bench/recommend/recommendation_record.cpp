@@ -121,7 +121,7 @@ RecommendationRecord recommendation_record(const Recommendation& r, const Recomm
     record.workload  = to_text(options.workload);
     record.views     = options.views;
     record.size      = size_record(r.size);
-    record.settings  = {.looked_at = r.looked_at, .of = r.settings};
+    record.settings  = {.looked_at = r.candidates.size(), .of = options.choices.size()};
     record.noise_bar = r.noise_bar;
     if (!options.kept_in.empty()) record.kept_in = options.kept_in;
     return record;

@@ -210,13 +210,14 @@ std::string recommendation_text(const Recommendation& r, const RecommendOptions&
         if (r.exact && r.exact->candidate != *r.chosen)
             text += fmt::format("  The exact reference: {}\n", rival_in_words(*r.exact, r));
     }
+    const std::size_t looked_at = r.candidates.size();
     text += staircase_in_words(r, options);
     text += methods_in_words(r, options) + noise_in_words(r, options);
-    text +=
-        fmt::format("  {} of {} {} looked at, in up to {} of {} x {} pixels each{}.\n", r.looked_at,
-                    counted(static_cast<double>(r.settings), "setting"), r.looked_at == 1 ? "was" : "were",
-                    counted_views(options.views), r.size.width, r.size.height,
-                    r.looked_at + r.unasked.size() < r.settings ? "; others cost more than one within the limits" : "");
+    text += fmt::format(
+        "  {} of {} {} looked at, in up to {} of {} x {} pixels each{}.\n", looked_at,
+        counted(static_cast<double>(options.choices.size()), "setting"), looked_at == 1 ? "was" : "were",
+        counted_views(options.views), r.size.width, r.size.height,
+        looked_at + r.unasked.size() < options.choices.size() ? "; others cost more than one within the limits" : "");
     if (!r.unasked.empty())
         text += fmt::format("  {} {} not looked at in time; with --seconds 1000 they are.\n",
                             counted(static_cast<double>(r.unasked.size()), "setting"),

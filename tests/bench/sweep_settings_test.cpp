@@ -106,13 +106,11 @@ TEST(Grid, EveryMethodHasASweepThatHoldsItsDefaultAndItsPresets) {
 TEST(Families, GrowAlongTheFirstSweptNumber) {
     const auto all = families(expand_settings("shadow_zbuffer:filter=nearest|pcf,resolution=1024|256|512"));
     ASSERT_EQ(all.size(), 2u);
-    EXPECT_EQ(all[0].parameter, "resolution");
-    EXPECT_EQ(texts(all[0].settings), (Texts{"shadow_zbuffer:resolution=256", "shadow_zbuffer:resolution=512",
-                                             "shadow_zbuffer:resolution=1024"}));
-    EXPECT_EQ(all[1].settings.size(), 3u);
+    EXPECT_EQ(texts(all[0]), (Texts{"shadow_zbuffer:resolution=256", "shadow_zbuffer:resolution=512",
+                                    "shadow_zbuffer:resolution=1024"}));
+    EXPECT_EQ(all[1].size(), 3u);
     const auto volumes = families(expand_settings("shadow_volumes:edges=weighted|silhouette"));
-    ASSERT_EQ(volumes.size(), 2u);
-    EXPECT_EQ(volumes[0].parameter, "");
+    EXPECT_EQ(volumes.size(), 2u);
 }
 
 TEST(Limits, AreParsedAndRefused) {
@@ -316,7 +314,7 @@ TEST_F(RecommendByHand, BehindADroppedSettingTheNextOfItsFamilyIsTried) {
     ASSERT_TRUE(r.chosen.has_value());
     EXPECT_EQ(text(r, *r.chosen), "ray_traced:samples=64");
     EXPECT_EQ(r.dropped.size(), 1u);
-    EXPECT_EQ(r.looked_at, 4u);
+    EXPECT_EQ(r.candidates.size(), 4u);
     EXPECT_EQ(*r.candidates[*r.chosen].cost, 8);
     EXPECT_FALSE(r.runner_up.has_value());
     EXPECT_EQ(r.staircase.size(), 4u) << "a step for each";
@@ -482,7 +480,7 @@ TEST_F(RecommendByHand, TheFirstAnswerIsLookedAtBeforeAllOthers) {
     const Recommendation r = recommend(lab_, lab_, o_);
     ASSERT_TRUE(r.chosen.has_value());
     EXPECT_EQ(text(r, *r.chosen), "ray_traced");
-    EXPECT_EQ(r.looked_at, 1u);
+    EXPECT_EQ(r.candidates.size(), 1u);
     EXPECT_EQ(r.unasked.size(), 3u);
 }
 
@@ -497,10 +495,10 @@ TEST_F(RecommendByHand, WhatEarlierQuestionsLookedAtIsKnownAndItsTimeIsSpent) {
     const Recommendation r = recommended(four_methods());
     ASSERT_TRUE(r.chosen.has_value());
     EXPECT_EQ(text(r, *r.chosen), "ray_traced");
-    EXPECT_EQ(r.looked_at, 1u);
+    EXPECT_EQ(r.candidates.size(), 1u);
     EXPECT_EQ(r.unasked.size(), 3u);
     o_.seconds = 17;
-    EXPECT_GT(recommend(lab_, lab_, o_).looked_at, 1u);
+    EXPECT_GT(recommend(lab_, lab_, o_).candidates.size(), 1u);
     EXPECT_GT(lab_.spent_on(parse_method("shadow_zbuffer")), 0);
     EXPECT_EQ(lab_.spent_on(rays), 16) << "it was known";
     o_.seconds = 1;
