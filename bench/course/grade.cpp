@@ -8,46 +8,33 @@
 
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/sweep/metrics.h"
 
 namespace umbra {
 namespace {
 
-std::optional<double> part(std::optional<std::uint64_t> of, std::uint64_t all) {
-    if (!of || all == 0) return std::nullopt;
-    return static_cast<double>(*of) / static_cast<double>(all);
+std::optional<double> part(std::optional<double> of, std::uint64_t all) {
+    return of && all > 0 ? std::optional(*of / static_cast<double>(all)) : std::nullopt;
 }
 
-std::optional<double> part_of_both(const DirectionRecord& wrong, std::uint64_t all) {
-    return part(wrong.false_shadow + wrong.false_light, all);
-}
+const Cause& cause_of(const std::string& of) { return *std::ranges::find(causes(), of, &Cause::name); }
 
 /// At one light.
 std::optional<double> figure_at(const ErrorRecord& e, const std::string& of) {
     const std::uint64_t points = e.points.value_or(0);
-    const auto shadow          = e.false_shadow.value_or(FalseShadowRecord{});
-    const auto light           = e.false_light.value_or(FalseLightRecord{});
-    if (of == "undefined") return part(e.undefined, points + e.undefined);
-    if (of == "terminator") return part(e.terminator.wrong, e.terminator.normal_away);
+    if (of == "undefined") return part(static_cast<double>(e.undefined), points + e.undefined);
+    if (of == "terminator") return part(static_cast<double>(e.terminator.wrong), e.terminator.normal_away);
     if (of == "displacement")
         return e.edge_displacement_px ? known(e.edge_displacement_px->p95) : std::optional<double>();
     if (of == "penumbra_width") {
         if (!e.penumbra_width_px || !(e.penumbra_width_px->reference > 0)) return std::nullopt;
         return known(std::abs(e.penumbra_width_px->method / e.penumbra_width_px->reference - 1));
     }
-    if (of == "mae") return e.mae;
-    if (of == "rmse") return e.rmse;
     if (of == "bias") return e.bias ? std::optional(std::abs(*e.bias)) : std::nullopt;
-    if (of == "acne") return part(shadow.acne, points);
-    if (of == "detachment") return part(light.detachment, points);
-    if (of == "leak") return part(light.leak, points);
-    if (of == "false_shadow") return part(shadow.interior, points);
-    if (of == "false_light") return part(light.interior, points);
-    if (of == "penumbra") return part_of_both(e.penumbra_error, points);
-    if (of == "noise") return part_of_both(e.noise_error, points);
-    return part(shadow.edge.value_or(0) + light.edge.value_or(0), points);  // edge
+    const Metric& metric              = find_metric(cause_of(of).metric);
+    const std::optional<double> value = metric.of_light(e);
+    return metric.kind == Metric::Kind::share ? part(value, points) : value;
 }
-
-std::string_view unit_of(const std::string& of) { return std::ranges::find(causes(), of, &Cause::name)->unit; }
 
 /// The nearest multiple of a step; of a tenth as a decimal has it.
 double stepped(double points, double step) {
@@ -97,8 +84,7 @@ GradedSceneRecord graded(const RubricItemRecord& item, const Compared& scene) {
 std::string cause_in_words(const std::string& of, const GradedSceneRecord& found, const std::string& against) {
     if (of == "failed") return *found.figure > 0 ? "it failed: " + found.why : "it did not fail";
     if (of == "refused") return *found.figure > 0 ? "it is not served: " + found.why : "it is served";
-    std::string text = fmt::format(fmt::runtime(std::ranges::find(causes(), of, &Cause::name)->says),
-                                   figure_in_words(of, *found.figure));
+    std::string text = fmt::format(fmt::runtime(cause_of(of).says), figure_in_words(of, *found.figure));
     if (!against.empty()) text += fmt::format(" ({})", against);
     return found.light.empty() ? text : text + fmt::format(", light {}", found.light);
 }
@@ -162,7 +148,7 @@ std::optional<Figure> figure_of(const Results& results, const MethodRecord& meth
 }
 
 std::string figure_in_words(const std::string& of, double figure) {
-    const std::string_view unit = unit_of(of);
+    const std::string_view unit = cause_of(of).unit;
     if (unit == "%") return percent(figure) + " %";
     if (unit == "px") return fmt::format("{} px", score(figure));
     return unit == "x" ? fmt::format("{} times", score(figure)) : score(figure);

@@ -14,9 +14,10 @@ namespace umbra {
 
 /// What a figure of a rubric is, and how a sentence says it.
 struct Cause {
-    std::string_view name;  ///< as rubrics have it: "acne"
-    std::string_view unit;  ///< "%": a fraction; "px"; "": a plain number; "x": a ratio
-    std::string_view says;  ///< "{} of the points are acne"
+    std::string_view name;      ///< as rubrics have it: "acne"
+    std::string_view unit;      ///< "%": a fraction; "px"; "": a plain number; "x": a ratio
+    std::string_view says;      ///< "{} of the points are acne"
+    std::string_view metric{};  ///< of a light (bench/sweep/metrics.h); empty where no metric is the figure
 };
 /// All that a rubric may ask for.
 [[nodiscard]] const std::vector<Cause>& causes();
