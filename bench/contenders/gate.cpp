@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "umbra/bench/contenders/program_session.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/scratch_folder.h"
 #include "umbra/bench/run/prepare.h"

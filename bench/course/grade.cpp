@@ -1,7 +1,6 @@
 #include "umbra/bench/course/grade.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

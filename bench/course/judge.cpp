@@ -1,7 +1,6 @@
 #include "umbra/bench/course/judge.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>

@@ -10,7 +10,6 @@
 #include "umbra/bench/record/record.h"
 #include "umbra/bench/run/chosen.h"
 #include "umbra/core/base/error.h"
-#include "umbra/core/io/scene_io.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {

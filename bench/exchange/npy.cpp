@@ -13,7 +13,6 @@
 #include <regex>
 
 #include "umbra/core/base/error.h"
-#include "umbra/core/io/source_text.h"
 
 namespace umbra {
 namespace fs = std::filesystem;

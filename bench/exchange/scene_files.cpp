@@ -116,8 +116,7 @@ void append_chunk(std::string& all, std::uint32_t kind, const std::string& data)
     all += data;
 }
 
-}  // namespace
-
+/// Triangles, camera and lights (points, suns and spots; others are nodes without a light) as glTF binary.
 std::string glb_text(const Scene& scene) {
     Json root{{"asset", {{"version", "2.0"}, {"generator", "umbra"}}}, {"scene", 0}};
     Buffer buffer(root);
@@ -181,6 +180,8 @@ std::string glb_text(const Scene& scene) {
     const std::uint32_t header[]{0x46546C67, 2, static_cast<std::uint32_t>(12 + chunks.size())};
     return std::string(reinterpret_cast<const char*>(header), sizeof header) + chunks;
 }
+
+}  // namespace
 
 void write_scene_files(const fs::path& folder, const Scene& scene) {
     write_text(folder / SceneExport::json, native_text(scene));

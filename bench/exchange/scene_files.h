@@ -27,7 +27,4 @@ void write_points(const std::filesystem::path& file, const Scene& scene, const P
 /// uint8 a point: 1 where S_j of the light is asked for.
 void write_asked(const std::filesystem::path& file, const PointBatch& points, LightId light);
 
-/// Triangles, camera and lights (points, suns and spots; others are nodes without a light) as glTF binary.
-[[nodiscard]] std::string glb_text(const Scene& scene);
-
 }  // namespace umbra

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "umbra/bench/pages/report_text.h"
-#include "umbra/bench/record/field.h"
 #include "umbra/bench/sweep/bounds.h"
 #include "umbra/core/base/stopwatch.h"
 

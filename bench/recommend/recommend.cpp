@@ -1,7 +1,5 @@
 #include "umbra/bench/recommend/recommend.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
