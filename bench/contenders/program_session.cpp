@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -72,10 +73,7 @@ fs::path made(const fs::path& folder) {
 
 /// The command with the folder of the run where it says {run}.
 std::vector<std::string> placed(std::vector<std::string> command, const fs::path& run) {
-    constexpr std::string_view kRun = "{run}";
-    for (std::string& word : command)
-        for (std::size_t at = word.find(kRun); at != std::string::npos; at = word.find(kRun, at))
-            word.replace(at, kRun.size(), run.string()), at += run.string().size();
+    for (std::string& word : command) boost::replace_all(word, "{run}", run.string());
     return command;
 }
 
@@ -116,16 +114,13 @@ Field ProgramSession::ask(const Json& message) {
     return answer;
 }
 
-double ProgramSession::time_of(const Field& answer) {
-    const std::optional<double> ms = answer["ms"].number();
-    if (ms && *ms < 0) answer["ms"].refuse("milliseconds, 0 or more");
-    return ms.value_or(std::nan(""));
-}
-
-double ProgramSession::send(const Json& message) {
+double ProgramSession::send(const Json& message, const std::function<void(const Field&)>& read) {
     const Field answer = ask(message);
     try {
-        return time_of(answer);
+        if (read) read(answer);
+        const std::optional<double> ms = answer["ms"].number();
+        if (ms && *ms < 0) answer["ms"].refuse("milliseconds, 0 or more");
+        return ms.value_or(std::nan(""));
     } catch (const InputError& e) {
         process_.fail(e.what() + std::string("."));
     }
@@ -136,8 +131,7 @@ double ProgramSession::answers(const Json& message, const Scene& scene, const Po
     const std::string expected = message["answers"];
     std::error_code ignored;
     fs::remove(folder() / expected, ignored);  // those of the call before are no answer
-    const Field answer = ask(message);
-    try {
+    return send(message, [&](const Field& answer) {
         const std::string named = answer["answers"].text();
         const fs::path file     = folder() / (named.empty() ? expected : named);
         if (named.find('/') != std::string::npos)
@@ -145,10 +139,7 @@ double ProgramSession::answers(const Json& message, const Scene& scene, const Po
         if (fs::symlink_status(file).type() != fs::file_type::regular)
             process_.fail(fmt::format("the program answered, but wrote no file {}.", named.empty() ? expected : named));
         read_answers(file, scene, points, light, true, out);
-        return time_of(answer);
-    } catch (const InputError& e) {
-        process_.fail(e.what() + std::string("."));
-    }
+    });
 }
 
 }  // namespace umbra

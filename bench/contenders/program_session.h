@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -38,8 +39,8 @@ public:
     [[nodiscard]] bool is_alive() const { return process_.is_alive(); }
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }
 
-    /// What the program says it took, milliseconds; NaN where it says nothing.
-    double send(const Json& message);
+    /// What the program says it took, milliseconds; NaN where it says nothing. `read`, if given, takes its answer.
+    double send(const Json& message, const std::function<void(const Field& answer)>& read = {});
     /// The same of `visibility`; reads the answers.
     double answers(const Json& message, const Scene& scene, const PointBatch& points, LightId light,
                    const Visibility& out);
@@ -49,7 +50,6 @@ public:
     const void* aimed  = nullptr;
 
 private:
-    [[nodiscard]] static double time_of(const Field& answer);
     [[nodiscard]] Field ask(const Json& message);
 
     ScratchFolder folder_;  // outlives the program
