@@ -24,7 +24,6 @@
 #include "umbra/bench/report/lecture_experiments.h"
 #include "umbra/bench/report/lecture_page.h"
 #include "umbra/bench/report/report_views.h"
-#include "umbra/bench/report/study_page.h"
 #include "umbra/bench/trade/trade_page.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/paths.h"
@@ -56,20 +55,44 @@ std::vector<fs::path> results_files(const fs::path& dir) {
     return files;
 }
 
+/// The scene of a results.json, without what was found there.
+ScenePage recorded_scene(const Field& root, const fs::path& file) {
+    ScenePage page{.root  = root,
+                   .data  = fs::canonical(file.parent_path()),
+                   .page  = {},
+                   .name  = root["scene"]["name"].required_text(),
+                   .title = root["scene"]["title"].text()};
+    if (page.title.empty()) page.title = in_words(page.name);
+    return page;
+}
+
 /// A results.json of a compared scene, and its place; nothing where it is of another command.
 std::optional<ScenePage> read_scene(const Field& root, const fs::path& file) {
     for (const char* other : {"ladders", "bias", "sweep", "sweeps", "motion", "growth", "experiments"})
         if (root[other].present()) return std::nullopt;
     if (!root["methods"].present()) root["methods"].refuse("an array");
-    ScenePage scene{.root    = root,
-                    .results = from_record<Results>(root),
-                    .data    = fs::canonical(file.parent_path()),
-                    .page    = {},
-                    .name    = root["scene"]["name"].required_text(),
-                    .title   = {}};
-    scene.title     = scene.results.scene.title.empty() ? in_words(scene.name) : scene.results.scene.title;
-    scene.triangles = static_cast<double>(scene.results.facts.triangles);
+    Results results = from_record<Results>(root);
+    ScenePage scene = recorded_scene(root, file);
+    scene.triangles = static_cast<double>(results.facts.triangles);
+    scene.results   = std::move(results);
     return scene;
+}
+
+/// What `umbra shading`, `umbra whitted` or `umbra radiosity` wrote, as a part of a report.
+struct StudyPage {
+    std::string command;  ///< "shading", "whitted" or "radiosity"
+    ScenePage scene;      ///< its results, pictures and page
+};
+
+/// Nothing where the results.json is of another command.
+std::optional<StudyPage> read_study(const Field& root, const fs::path& file) {
+    for (const auto& [member, command] : {std::pair{"models", "shading"}, {"ways", "whitted"}, {"unshot", "radiosity"}})
+        if (root[member].present()) {
+            StudyPage study{command, recorded_scene(root, file)};
+            study.scene.results.size = from_record<SizeRecord>(root["size"]);
+            return study;
+        }
+    return std::nullopt;
 }
 
 /// A folder of ladders, and where its page lies in the report.
@@ -99,67 +122,78 @@ std::vector<fs::path> swept(const Field& root, const fs::path& file) {
     return files;
 }
 
-Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
-    std::vector<ScenePage> all;
-    std::vector<StudyPage> studies;
-    std::vector<LadderFolder> ladders;
-    std::vector<fs::path> sweeps;
-    std::optional<ScenePage> experiments;
-    const auto is_below_out = [&](const fs::path& folder) {
-        const fs::path relative = folder.lexically_relative(out);
-        return relative != "." && *relative.begin() != "..";
-    };
-    for (const fs::path& dir : dirs) {
-        const auto first = std::ptrdiff_t(all.size());
-        for (const fs::path& file : results_files(dir)) {
-            const Field root = read_results(file);
-            // A report that was made before holds copies.
-            if (root["ladders"].present() && std::ranges::none_of(ladders, [&](const LadderFolder& other) {
-                    return bytes_of(other.data / "results.json") == bytes_of(file);
-                }))
-                ladders.push_back({fs::canonical(file.parent_path()), {}});
-            if (root["experiments"].present() && !experiments)
-                experiments = ScenePage{
-                    .root = root, .data = fs::canonical(file.parent_path()), .page = {}, .name = {}, .title = {}};
-            for (fs::path& sweep : swept(root, file))
-                if (std::find(sweeps.begin(), sweeps.end(), sweep) == sweeps.end()) sweeps.push_back(std::move(sweep));
-            if (std::optional<StudyPage> study = read_study(root, file)) {
-                if (std::ranges::none_of(studies,
-                                         [&](const StudyPage& s) { return s.scene.data == study->scene.data; }))
-                    studies.push_back(std::move(*study));
-                continue;
-            }
-            std::optional<ScenePage> read = read_scene(root, file);
-            if (!read) continue;
-            ScenePage& scene = *read;
-            const bool seen =
-                std::any_of(all.begin(), all.end(), [&](const ScenePage& other) { return other.data == scene.data; });
-            if (!seen) all.push_back(std::move(scene));
-        }
-        // From simple to large, the order of a lecture.
-        std::stable_sort(all.begin() + first, all.end(),
-                         [](const ScenePage& a, const ScenePage& b) { return a.triangles < b.triangles; });
-    }
+bool is_below(const fs::path& folder, const fs::path& out) {
+    const fs::path relative = folder.lexically_relative(out);
+    return relative != "." && *relative.begin() != "..";
+}
 
+/// Where each page lies: beside its data, where those are below `out`, else in a folder of its own there.
+void place_pages(Found& found, const fs::path& out) {
     std::set<fs::path> taken;
-    if (!sweeps.empty()) taken.insert(out / "trade");
-    for (ScenePage& scene : all)
-        if (is_below_out(scene.data)) taken.insert(scene.page = scene.data);
-    for (LadderFolder& folder : ladders)
-        if (is_below_out(folder.data)) taken.insert(folder.page = folder.data);
+    if (!found.sweeps.empty()) taken.insert(out / "trade");
+    for (StudyPage& study : found.studies)
+        study.scene.page = is_below(study.scene.data, out) ? study.scene.data
+                                                           : out / folder_name(study.command + "-" + study.scene.name);
+    const auto stay = [&](auto& of) {
+        if (is_below(of.data, out)) taken.insert(of.page = of.data);
+    };
     const auto place = [&](fs::path& page, const std::string& name) {
         for (int i = 1; page.empty(); ++i) {
             const fs::path folder = out / (name + (i > 1 ? fmt::format("-{}", i) : ""));
             if (taken.insert(folder).second) page = folder;
         }
     };
-    if (experiments) {
-        if (is_below_out(experiments->data)) taken.insert(experiments->page = experiments->data);
-        place(experiments->page, "lectures");
+    std::ranges::for_each(found.scenes, stay);
+    std::ranges::for_each(found.ladders, stay);
+    if (found.experiments) {
+        stay(*found.experiments);
+        place(found.experiments->page, "lectures");
     }
-    for (LadderFolder& folder : ladders) place(folder.page, "ladders");
-    for (ScenePage& scene : all) place(scene.page, folder_name(scene.name));
-    return {std::move(all), std::move(studies), std::move(ladders), std::move(sweeps), std::move(experiments)};
+    for (LadderFolder& folder : found.ladders) place(folder.page, "ladders");
+    for (ScenePage& scene : found.scenes) place(scene.page, folder_name(scene.name));
+}
+
+Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
+    Found found;
+    for (const fs::path& dir : dirs) {
+        const auto first = std::ptrdiff_t(found.scenes.size());
+        for (const fs::path& file : results_files(dir)) {
+            const Field root = read_results(file);
+            // A report that was made before holds copies.
+            if (root["ladders"].present() && std::ranges::none_of(found.ladders, [&](const LadderFolder& other) {
+                    return bytes_of(other.data / "results.json") == bytes_of(file);
+                }))
+                found.ladders.push_back({fs::canonical(file.parent_path()), {}});
+            if (root["experiments"].present() && !found.experiments)
+                found.experiments = ScenePage{
+                    .root = root, .data = fs::canonical(file.parent_path()), .page = {}, .name = {}, .title = {}};
+            for (fs::path& sweep : swept(root, file))
+                if (std::ranges::find(found.sweeps, sweep) == found.sweeps.end())
+                    found.sweeps.push_back(std::move(sweep));
+            if (std::optional<StudyPage> study = read_study(root, file)) {
+                if (std::ranges::none_of(found.studies,
+                                         [&](const StudyPage& s) { return s.scene.data == study->scene.data; }))
+                    found.studies.push_back(std::move(*study));
+            } else if (std::optional<ScenePage> scene = read_scene(root, file)) {
+                if (std::ranges::find(found.scenes, scene->data, &ScenePage::data) == found.scenes.end())
+                    found.scenes.push_back(std::move(*scene));
+            }
+        }
+        // From simple to large, the order of a lecture.
+        std::stable_sort(found.scenes.begin() + first, found.scenes.end(),
+                         [](const ScenePage& a, const ScenePage& b) { return a.triangles < b.triangles; });
+    }
+    place_pages(found, out);
+    return found;
+}
+
+/// The files that an iterator of folders finds in `from`, to the same places in `to`.
+template <class Iterator>
+void copy_files(const fs::path& from, const fs::path& to, StagedFiles& staged) {
+    if (from == to) return;
+    for (const auto& entry : Iterator(from))
+        if (entry.is_regular_file() && !is_hidden_name_of_ours(entry.path()))
+            staged.copy(entry.path(), to / entry.path().lexically_relative(from));
 }
 
 /// The tables of ladders for the first page, one a run, and the pages of ladders with their files where they can be
@@ -167,10 +201,7 @@ Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
 json ladder_sections(const std::vector<LadderFolder>& folders, const fs::path& out, StagedFiles& staged) {
     json sections = json::array();
     for (const LadderFolder& folder : folders) {
-        if (folder.page != folder.data)
-            for (const auto& entry : fs::recursive_directory_iterator(folder.data))
-                if (entry.is_regular_file() && !is_hidden_name_of_ours(entry.path()))
-                    staged.copy(entry.path(), folder.page / entry.path().lexically_relative(folder.data));
+        copy_files<fs::recursive_directory_iterator>(folder.data, folder.page, staged);
         const LaddersRecord record = read_ladders(folder.data / "results.json");
         const std::string page     = url((folder.page / "index.html").lexically_relative(out));
         const std::string number   = sections.empty() ? "" : fmt::format("-{}", sections.size() + 1);
@@ -306,7 +337,8 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
     const std::vector<ScenePage>& scenes = found.scenes;
     for (ScenePage& scene : found.scenes) scene.with_exr = options.with_exr;
     StagedFiles staged;
-    for (StudyPage& study : found.studies) take_study(study, root, staged);
+    for (const StudyPage& study : found.studies)
+        copy_files<fs::directory_iterator>(study.scene.data, study.scene.page, staged);
     const std::vector<MethodRecord> settings = settings_of(scenes);
 
     std::vector<SceneFiles> files;
