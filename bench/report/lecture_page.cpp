@@ -34,7 +34,7 @@ json caption_of(const std::string& name, Language language) {
     return name.empty() ? json(false) : json(lecture_name(name, language));
 }
 
-void add_shown(const LectureShow* show, const SceneFiles& files, const fs::path& out, Language language,
+void add_shown(const std::optional<LectureShow>& show, const SceneFiles& files, const fs::path& out, Language language,
                json& pictures) {
     const auto add = [&](const FileName& file, const json& caption) {
         json picture = files.figure(file, "", "", caption.is_string() ? caption : json(files.scene().title), out);
@@ -42,7 +42,7 @@ void add_shown(const LectureShow* show, const SceneFiles& files, const fs::path&
         picture["caption"] = caption;
         pictures.push_back(std::move(picture));
     };
-    if (show == nullptr) return add(picture_of(files.scene().results.reference.files), false);
+    if (!show) return add(picture_of(files.scene().results.reference.files), false);
     for (const LectureValue& value : show->pictures)
         add(from_record<FileName>(value_at(files.scene().root, value.path)), caption_of(value.name, language));
 }
@@ -123,18 +123,6 @@ std::string pairs_in_words(const ExperimentRecord& experiment, Language language
     return words + ".";
 }
 
-/// The figures of a comparison or study, in words.
-void add_measured(const LectureRow& row, const LectureShow& show, const LectureSources& sources, Language language,
-                  json& measured) {
-    const auto root_of = [&](const std::string& frame) {
-        const SceneFiles* files = page_of(sources, show.study, row.scene + frame);
-        return files == nullptr ? Field{} : files->scene().root;
-    };
-    for (const LectureFigure& figure : show.figures)
-        measured.push_back(
-            {{"text", figure_in_words(figure, root_of, language)}, {"lang", std::string(language.code)}});
-}
-
 /// The record of an experiment, of this id; null where there is none.
 const ExperimentRecord* experiment_of(const ExperimentsRecord& record, const std::string& id) {
     const auto found = std::ranges::find(record.experiments, id, &ExperimentRecord::name);
@@ -144,7 +132,7 @@ const ExperimentRecord* experiment_of(const ExperimentsRecord& record, const std
 json row_view(const LectureRow& row, const LectureSources& sources, const ExperimentsRecord& experiments,
               const fs::path& out, Language language) {
     const json& words                  = lecture_words(language)["topics"][row.id];
-    const LectureShow* show            = lecture_show(row.id);
+    const auto& show                   = row.show;
     const ExperimentRecord* experiment = experiment_of(experiments, row.id);
     json view                          = {{"id", row.id},
                                           {"topic", words["topic"]},
@@ -152,25 +140,32 @@ json row_view(const LectureRow& row, const LectureSources& sources, const Experi
                                           {"state", state_in_words(row.state, language)},
                                           {"unfinished", !row.state.starts_with("works")},
                                           {"shown", false}};
-    const SceneFiles* files =
-        row.scene.empty() ? nullptr : page_of(sources, show == nullptr ? "" : show->study, row.scene);
+    const std::string study            = show ? show->study : "";
+    const SceneFiles* files            = row.scene.empty() ? nullptr : page_of(sources, study, row.scene);
     if (files == nullptr && experiment == nullptr && !words.contains("proves")) return view;
     json pictures = json::array(), measured = json::array();
-    json shown = {{"proves", words.value("proves", "")}, {"scene", false}, {"chart", false}};
+    json shown              = {{"proves", words.value("proves", "")}, {"scene", false}, {"chart", false}};
+    const auto add_measured = [&](const std::string& text) {
+        if (!text.empty()) measured.push_back({{"text", text}, {"lang", std::string(language.code)}});
+    };
     if (files != nullptr) {
         shown["href"] = url((files->scene().page / "index.html").lexically_relative(out));
-        if (show != nullptr || experiment == nullptr) add_shown(show, *files, out, language, pictures);
-        if (show != nullptr) add_measured(row, *show, sources, language, measured);
-        if (!measured.empty()) shown["scene"] = files->scene().title;
+        if (show || experiment == nullptr) add_shown(show, *files, out, language, pictures);
+    }
+    if (files != nullptr && show && !show->figures.empty()) {
+        const auto root_of = [&](const std::string& frame) {
+            const SceneFiles* of_frame = page_of(sources, study, row.scene + frame);
+            return of_frame == nullptr ? Field{} : of_frame->scene().root;
+        };
+        for (const LectureFigure& figure : show->figures) add_measured(figure_in_words(figure, root_of, language));
+        shown["scene"] = files->scene().title;
     }
     if (experiment != nullptr) {
         add_variants(*experiment, *sources.experiments, out, language, pictures);
         shown["chart"] = chart_of(*experiment, language);
-        for (const auto& in_words : {deviation_in_words, pairs_in_words})
-            measured.push_back({{"text", in_words(*experiment, language)}, {"lang", std::string(language.code)}});
+        add_measured(deviation_in_words(*experiment, language));
+        add_measured(pairs_in_words(*experiment, language));
     }
-    std::erase_if(measured.get_ref<json::array_t&>(),
-                  [](const json& line) { return line["text"].get_ref<const std::string&>().empty(); });
     shown["several"]     = pictures.size() != 1;
     shown["is_proved"]   = files != nullptr || experiment != nullptr;
     shown["illustrated"] = !pictures.empty();

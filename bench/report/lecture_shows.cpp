@@ -60,11 +60,6 @@ const std::vector<LectureRow>& lecture_rows() {
     return rows;
 }
 
-const LectureShow* lecture_show(std::string_view id) {
-    const auto found = std::ranges::find(lecture_rows(), id, &LectureRow::id);
-    return found == lecture_rows().end() || !found->show ? nullptr : &*found->show;
-}
-
 Field value_at(const Field& root, std::string_view path) {
     Field at = root;
     while (!path.empty() && at.present()) {

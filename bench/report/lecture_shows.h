@@ -37,7 +37,8 @@ struct LectureShow {
     bool shadows = true;  ///< false: shading is compared without them
 };
 
-/// `scene` is empty where no scene shows the topic; `test` checks it and the file `code` computes it.
+/// `scene` is empty where no scene shows the topic; `test` checks it and the file `code` computes it. Without a `show`
+/// the reference's picture of the scene shows it.
 struct LectureRow {
     std::string id, source, scene, test, code, state;
     std::optional<LectureShow> show;
@@ -45,9 +46,6 @@ struct LectureRow {
 
 /// In the lectures' order.
 [[nodiscard]] const std::vector<LectureRow>& lecture_rows();
-
-/// Null where the reference's picture shows the topic.
-[[nodiscard]] const LectureShow* lecture_show(std::string_view id);
 
 /// Absent where the record has no such thing.
 [[nodiscard]] Field value_at(const Field& root, std::string_view path);

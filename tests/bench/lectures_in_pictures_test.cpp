@@ -287,8 +287,8 @@ TEST(LectureShows, NameWhatTheCommandsWrite) {
     const MethodChoice rays = parse_method("ray_traced");
     std::set<std::pair<std::string, std::string>> made;
     for (const LectureRow& row : lecture_rows()) {
-        const LectureShow* show = lecture_show(row.id);
-        if (show == nullptr) continue;
+        const std::optional<LectureShow>& show = row.show;
+        if (!show) continue;
         ASSERT_FALSE(row.scene.empty()) << row.id;
         const std::string study(show->study);
         const fs::path place = folder / (study + "-" + row.scene);

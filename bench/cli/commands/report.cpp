@@ -62,12 +62,11 @@ fs::path scene_named(std::string_view name) { return scenes_folder() / fmt::form
 std::vector<fs::path> compared_scenes() {
     std::vector<fs::path> scenes = canonical_scenes(scenes_folder());
     for (const LectureRow& row : lecture_rows()) {
-        const LectureShow* show = lecture_show(row.id);
-        const fs::path scene    = scene_named(row.scene);
-        if (row.scene.empty() || (show != nullptr && !show->study.empty()) || !fs::exists(scene)) continue;
+        const fs::path scene = scene_named(row.scene);
+        if (row.scene.empty() || (row.show && !row.show->study.empty()) || !fs::exists(scene)) continue;
         std::set<std::string> frames{""};
-        if (show != nullptr)
-            for (const LectureFigure& figure : show->figures)
+        if (row.show)
+            for (const LectureFigure& figure : row.show->figures)
                 for (const LectureValue& value : figure.values) frames.insert(value.frame);
         for (const std::string& frame : frames)
             if (const fs::path with = scene.string() + frame; std::ranges::find(scenes, with) == scenes.end())
@@ -112,8 +111,8 @@ void study_topic(const LectureShow& show, const fs::path& file, const fs::path& 
 std::vector<fs::path> study_on_terminal(const fs::path& out, const Common& common, bool& whole) {
     std::vector<fs::path> folders;
     for (const LectureRow& row : lecture_rows()) {
-        const LectureShow* show = lecture_show(row.id);
-        if (show == nullptr || show->study.empty() || !fs::exists(scene_named(row.scene))) continue;
+        const std::optional<LectureShow>& show = row.show;
+        if (!show || show->study.empty() || !fs::exists(scene_named(row.scene))) continue;
         const std::string name = fmt::format("{} {}", show->study, row.scene);
         const fs::path folder  = out / fmt::format("{}-{}", show->study, row.scene);
         if (std::ranges::find(folders, folder) != folders.end()) continue;
