@@ -187,11 +187,6 @@ void measure(DiffResult& result, const Image& a, const Image& b, double fail) {
                                            fmt::join(unseen, " ")));
 }
 
-bool is_same(const DiffResult& result, double warn) {
-    return result.error.unlike_not_finite == 0 && result.error.max <= warn &&
-           std::none_of(result.integers.begin(), result.integers.end(), [](const auto& d) { return d.differing > 0; });
-}
-
 /// Close or differs by the rules of a tolerance file.
 void judge_by_rules(DiffResult& result, const Tolerance& tolerance, std::size_t rule, const ComparedImages& images) {
     result.rule_name = tolerance.images[rule].name;
@@ -263,14 +258,8 @@ void write_pictures(DiffResult& result, const Image& a, const Image& b, const Di
 }  // namespace
 
 std::string_view to_string(Verdict verdict) {
-    switch (verdict) {
-        case Verdict::same: return "same";
-        case Verdict::close: return "close";
-        case Verdict::differs: return "differs";
-        case Verdict::unlike: return "unlike";
-        case Verdict::unreadable: return "unreadable";
-    }
-    return "";
+    constexpr std::array<std::string_view, kVerdicts.size()> kNames{"same", "close", "differs", "unlike", "unreadable"};
+    return kNames[static_cast<std::size_t>(verdict)];
 }
 
 std::string accept_by_copying(const std::filesystem::path& a, const std::filesystem::path& b) {
@@ -332,13 +321,14 @@ DiffResult diff(const std::filesystem::path& file_a, const std::filesystem::path
     measure(result, a.image, b.image, fail);
     std::size_t unlike = result.error.unlike_not_finite;
     for (const IntegerDiff& d : result.integers) unlike += d.differing;
-    if (!is_same(result, options.warn) && has_rule)
+    const bool is_same = unlike == 0 && result.error.max <= options.warn;
+    if (!is_same && has_rule)
         judge_by_rules(result, *rules, rule,
                        {a.image, b.image, file_a, result.name, result.error.rmse, result.error.psnr, result.ssim,
                         result.flip.mean, unlike});
-    else if (!is_same(result, options.warn))
+    else if (!is_same)
         judge(result, options, fail, options.fail || !asks_else);
-    if (rules && !has_rule && result.verdict != Verdict::same)
+    if (rules && !has_rule && !is_same)
         result.notes.push_back(fmt::format("no name in {} matches: no difference above {} is allowed",
                                            rules->file.string(), kDefaultFail));
     if (result.verdict == Verdict::differs) result.accept = accept_by_copying(file_a, file_b);

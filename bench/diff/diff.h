@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -22,6 +23,8 @@ enum class Verdict : std::uint8_t {
     unlike     = 3,  ///< not comparable: sizes, channels, windows or what the files say about colours differ
     unreadable = 4
 };
+inline constexpr std::array kVerdicts = {Verdict::same, Verdict::close, Verdict::differs, Verdict::unlike,
+                                         Verdict::unreadable};
 [[nodiscard]] std::string_view to_string(Verdict verdict);
 
 /// Limits. Those that are not set are not asked; where none is, `fail` is kDefaultFail (rounding).

@@ -17,29 +17,24 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Bytes that are not UTF-8 are replaced.
-std::string utf8(const std::string& text) {
-    return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace));
-}
-
 json image_view(const DiffResult& image, std::size_t index, const fs::path& pictures) {
-    json view = {{"name", utf8(image.name)},
+    json view = {{"name", utf8_text(image.name)},
                  {"id", fmt::format("image-{}", index + 1)},
                  {"verdict", to_string(image.verdict)},
-                 {"reasons", utf8(fmt::format("{}", fmt::join(image.reasons, "; ")))},
-                 {"notes", utf8(fmt::format("{}", fmt::join(image.notes, "; ")))},
+                 {"reasons", utf8_text(fmt::format("{}", fmt::join(image.reasons, "; ")))},
+                 {"notes", utf8_text(fmt::format("{}", fmt::join(image.notes, "; ")))},
                  {"worst", worst_pixel(image)},
                  {"measured", false},
                  {"conceded", needed_concessions(image.rules)},
-                 {"accept", utf8(image.accept)},
-                 {"rule_name", utf8(image.rule_name)},
+                 {"accept", utf8_text(image.accept)},
+                 {"rule_name", utf8_text(image.rule_name)},
                  {"rules", json::array()},
                  {"pictures", false}};
     for (const RuleOutcome& rule : image.rules)
         view["rules"].push_back({{"rule", rule.rule},
                                  {"inside", fmt::format("{}", rule.depth)},
                                  {"holds", rule.holds},
-                                 {"says", utf8(rule.says)}});
+                                 {"says", utf8_text(rule.says)}});
     if (!image.comparable()) return view;
     const ImageError& e = image.error;
     view["measured"]    = json{{"max", score(e.max)},
@@ -48,18 +43,18 @@ json image_view(const DiffResult& image, std::size_t index, const fs::path& pict
                             {"psnr", std::isfinite(e.psnr) ? fmt::format("{:.2f} dB", e.psnr) : "∞"},
                             {"ssim", fmt::format("{:.4f}", image.ssim)},
                             {"flip", score(image.flip.mean)},
-                            {"layer", utf8(layer_of_flip(image))},
+                            {"layer", utf8_text(layer_of_flip(image))},
                             {"pixels", count(double(e.differing))},
                             {"over", count(double(e.over))},
                             {"size", fmt::format("{} × {}", image.width, image.height)},
-                            {"channels", utf8(fmt::format("{}", fmt::join(all_channels(image), " ")))}};
+                            {"channels", utf8_text(fmt::format("{}", fmt::join(all_channels(image), " ")))}};
     if (image.verdict == Verdict::same) return view;
     const std::string source = (pictures / image.name).string();
     view["pictures"]         = json{{"a", url(source + ".a.png")},
                             {"b", url(source + ".b.png")},
                             {"map", url(source + ".map.png")},
-                            {"file_a", utf8(image.a)},
-                            {"file_b", utf8(image.b)},
+                            {"file_a", utf8_text(image.a)},
+                            {"file_b", utf8_text(image.b)},
                             {"range", image.map_range > 0 ? fmt::format("{:g}", image.map_range) : ""},
                             {"width", std::to_string(image.width)},
                             {"height", std::to_string(image.height)}};
@@ -80,12 +75,12 @@ void write_diff_page(const fs::path& file, const DiffSet& set) {
     const std::size_t fine = set.count(Verdict::same) + set.count(Verdict::close);
     StagedFiles staged;
     staged.write(file, render_page(assets::diff_html, {},
-                                   {{"a", utf8(set.a)},
-                                    {"b", utf8(set.b)},
+                                   {{"a", utf8_text(set.a)},
+                                    {"b", utf8_text(set.b)},
                                     {"verdict", to_string(set.worst())},
                                     {"count", count(double(set.images.size()))},
                                     {"bad", count(double(set.images.size() - fine))},
-                                    {"accept", utf8(accept)},
+                                    {"accept", utf8_text(accept)},
                                     {"many", set.images.size() != 1},
                                     {"images", std::move(images)}}));
     staged.commit();

@@ -118,7 +118,7 @@ std::string diff_set_text(const DiffSet& set) {
     for (const DiffResult& image : set.images) text += diff_line(image) + "\n";
     text += fmt::format("{} images", set.images.size());
     char separator = ':';
-    for (const Verdict v : {Verdict::same, Verdict::close, Verdict::differs, Verdict::unlike, Verdict::unreadable}) {
+    for (const Verdict v : kVerdicts) {
         if (set.count(v) == 0) continue;
         text += fmt::format("{} {} {}", separator, set.count(v), to_string(v));
         separator = ',';
@@ -131,8 +131,7 @@ nlohmann::json diff_set_json(const DiffSet& set) {
     nlohmann::json json{
         {"verdict", to_string(set.worst())},  {"exit_code", int(set.worst())},    {"a", set.a}, {"b", set.b},
         {"counts", nlohmann::json::object()}, {"images", nlohmann::json::array()}};
-    for (const Verdict v : {Verdict::same, Verdict::close, Verdict::differs, Verdict::unlike, Verdict::unreadable})
-        json["counts"][std::string(to_string(v))] = set.count(v);
+    for (const Verdict v : kVerdicts) json["counts"][std::string(to_string(v))] = set.count(v);
     for (const DiffResult& image : set.images) json["images"].push_back(diff_json(image));
     return json;
 }

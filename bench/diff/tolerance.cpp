@@ -154,10 +154,7 @@ public:
 private:
     /// Makes room for a rule, which stands before its parts.
     std::size_t begin(std::string rule, std::string at, std::size_t depth) {
-        outcomes_.emplace_back();
-        outcomes_.back().rule  = std::move(rule);
-        outcomes_.back().at    = std::move(at);
-        outcomes_.back().depth = depth;
+        outcomes_.push_back({.at = std::move(at), .rule = std::move(rule), .depth = depth});
         return outcomes_.size() - 1;
     }
     bool end(std::size_t index, bool holds, std::string says) {

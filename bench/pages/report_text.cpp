@@ -118,11 +118,13 @@ std::filesystem::path path_of_url(const std::string& url) {
     return path;
 }
 
+std::string utf8_text(const std::string& text) {
+    return nlohmann::json::parse(nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
 std::string xml_text(const std::string& text) {
-    const std::string valid =
-        nlohmann::json::parse(nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     std::string escaped;
-    for (const char c : valid) switch (c) {
+    for (const char c : utf8_text(text)) switch (c) {
             case '&': escaped += "&amp;"; break;
             case '<': escaped += "&lt;"; break;
             case '>': escaped += "&gt;"; break;

@@ -45,6 +45,9 @@ inline constexpr const char* kNone = "–";  ///< where there is no number
 /// A command line without the folders of the machine that it ran on: "/home/x/scenes/a.json" as "a.json".
 [[nodiscard]] std::string without_folders(const std::string& command);
 
+/// The text with U+FFFD for what is not UTF-8.
+[[nodiscard]] std::string utf8_text(const std::string& text);
+
 /// Text for an element or an attribute of XML: markup and line ends are escaped, other control characters become "?",
 /// and what is not UTF-8 becomes U+FFFD.
 [[nodiscard]] std::string xml_text(const std::string& text);
