@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/replace.hpp>
 #include <charconv>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/pages/report_text.h"
@@ -83,11 +85,7 @@ public:
                        std::isalpha(static_cast<unsigned char>(html_[at_ + 1]))) {
                 const std::string tag = start_tag();
                 if (tag == "script") copy_through("</script");
-                if (tag == "style") {
-                    const std::size_t begin = at_;
-                    at_                     = std::min(html_.find("</style", at_), html_.size());
-                    out_ += style(html_.substr(begin, at_ - begin), page_);
-                }
+                if (tag == "style") out_ += style(take_until(html_.find("</style", at_)), page_);
             } else {
                 out_ += html_[at_++];
             }
@@ -99,54 +97,40 @@ private:
     [[nodiscard]] bool here(std::string_view text) const { return html_.compare(at_, text.size(), text) == 0; }
     void copy_through(std::string_view text) {
         const std::size_t found = html_.find(text, at_);
-        const std::size_t end   = found == std::string::npos ? html_.size() : found + text.size();
-        out_ += html_.substr(at_, end - at_);
-        at_ = end;
+        out_ += take_until(found == std::string::npos ? found : found + text.size());
     }
-    /// Copies what belongs to one of these kinds of characters.
-    std::string take_while(bool (*belongs)(char)) {
-        const std::size_t begin = at_;
-        while (at_ < html_.size() && belongs(html_[at_])) ++at_;
+    /// The text up to `end`, a place in the page or npos, from where it goes on.
+    std::string take_until(std::size_t end) {
+        const std::size_t begin = std::exchange(at_, std::min(end, html_.size()));
         return html_.substr(begin, at_ - begin);
     }
 
     /// From "<" through ">"; returns the name of the element.
     std::string start_tag() {
-        const auto is_space = [](char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; };
-        const auto is_name  = [](char c) {
-            return c != ' ' && c != '\n' && c != '\t' && c != '\r' && c != '=' && c != '>' && c != '/';
-        };
+        constexpr const char *kSpaces = " \n\t\r", *kNoName = " \n\t\r=>/", *kNoValue = " \n\t\r>";
         ++at_;
-        std::string tag = take_while(is_name);
+        std::string tag = take_until(html_.find_first_of(kNoName, at_));
         out_ += "<" + tag;
         while (at_ < html_.size() && html_[at_] != '>') {
-            const std::string space = take_while(is_space);
-            if (at_ < html_.size() && !is_name(html_[at_]) && html_[at_] != '>') {
+            const std::string space = take_until(html_.find_first_not_of(kSpaces, at_));
+            if (here("=") || here("/")) {
                 out_ += space + html_[at_++];
                 continue;
             }
-            const std::string name = take_while(is_name);
-            if (name.empty()) {
-                out_ += space;
-                continue;
-            }
-            if (!here("=")) {
+            const std::string name = take_until(html_.find_first_of(kNoName, at_));
+            if (name.empty() || !here("=")) {
                 out_ += space + name;
                 continue;
             }
             ++at_;
             std::string value;
             if (here("\"") || here("'")) {
-                const char quote      = html_[at_];
-                const std::size_t end = std::min(html_.find(quote, at_ + 1), html_.size());
-                value                 = html_.substr(at_ + 1, end - at_ - 1);
-                at_                   = std::min(end + 1, html_.size());
+                const char quote = html_[at_++];
+                value            = take_until(html_.find(quote, at_));
+                at_              = std::min(at_ + 1, html_.size());
                 if (quote == '\'') value = with_double_quotes(value);
             } else {
-                const auto is_value = [](char c) {
-                    return c != ' ' && c != '\n' && c != '\t' && c != '\r' && c != '>';
-                };
-                value = take_while(is_value);
+                value = take_until(html_.find_first_of(kNoValue, at_));
             }
             if (const auto kept = attribute(tag, name, value)) out_ += fmt::format("{}{}=\"{}\"", space, name, *kept);
         }
@@ -154,9 +138,7 @@ private:
         return tag;
     }
     static std::string with_double_quotes(const std::string& value) {
-        std::string text;
-        for (const char c : value) text += c == '"' ? std::string("&quot;") : std::string(1, c);
-        return text;
+        return boost::algorithm::replace_all_copy(value, "\"", "&quot;");
     }
 
     /// The attribute's value in the embedded page; nothing where the attribute is dropped.
