@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
+#include "umbra/bench/out/files.h"
 #include "umbra/bench/pages/error_palette.h"
 #include "umbra/bench/pages/error_rings.h"
 #include "umbra/bench/pages/report_text.h"
@@ -95,9 +95,7 @@ json SceneFiles::rings(const FileName& classes) const {
 
 json SceneFiles::values(const FileName& script) const {
     if (!script) return false;
-    std::ifstream in(found(script), std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-    const std::optional<std::string> checked = checked_values(bytes);
+    const std::optional<std::string> checked = checked_values(bytes_of(found(script)));
     if (!checked) script.at.refuse("a script that umbra compare wrote");
     if (scene_.page != scene_.data) staged_.write(placed(script), *checked);
     return url(placed(script).lexically_relative(scene_.page));
@@ -193,7 +191,7 @@ Totals totals(const MethodRecord& method) {
     Totals t;
     double absolute = 0;
     for (const ErrorRecord& error : method.errors) {
-        for (const std::string& group : error_groups()) {
+        for (const std::string_view group : kErrorGroups) {
             t.interior += wrong_points(error, group, "interior").value_or(0);
             t.edge += wrong_points(error, group, "edge").value_or(0);
         }
@@ -209,14 +207,6 @@ Totals totals(const MethodRecord& method) {
     t.light_ms               = sum(visibility, median_of(times.aim_ms));
     t.object_ms              = sum(sum(t.camera_ms, median_of(times.aim_ms)), median_of(times.build_ms));
     return t;
-}
-
-std::vector<std::string> error_groups() {
-    std::vector<std::string> groups;
-    for (const ErrorColour& entry : kErrorPalette)
-        if (!entry.group.empty() && std::find(groups.begin(), groups.end(), entry.group) == groups.end())
-            groups.emplace_back(entry.group);
-    return groups;
 }
 
 const MethodRecord* worst_method(const Results& results) {
@@ -265,7 +255,7 @@ json class_picture_view(const SceneFiles& files, const MethodRecord& method, con
     double most = -1;
     for (const ErrorRecord& error : method.errors) {
         double wrong = 0;
-        for (const std::string& group : error_groups()) wrong += wrong_points(error, group, "interior").value_or(0);
+        for (const std::string_view group : kErrorGroups) wrong += wrong_points(error, group, "interior").value_or(0);
         const LightFilesRecord* of = files_of(method.files, error.light);
         if (wrong > most && of != nullptr && of->classes) light = error.light, picture = of->classes, most = wrong;
     }

@@ -1,10 +1,12 @@
 // What the pages of a report share: a scene's results and where they lie, names of methods, and their totals.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "umbra/bench/out/staged_files.h"
@@ -100,9 +102,9 @@ struct Totals {
 };
 [[nodiscard]] Totals totals(const MethodRecord& method);
 
-/// The objects of an `errors` entry that count wrong points, {interior, edge, and special classes}, each once, in the
-/// order of the class table: false_shadow, false_light.
-[[nodiscard]] std::vector<std::string> error_groups();
+/// The objects of an `errors` entry that count wrong points, {interior, edge, and special classes}, in the order of the
+/// class table.
+inline constexpr std::array<std::string_view, 2> kErrorGroups = {"false_shadow", "false_light"};
 /// A count of such an object: interior, edge, acne, detachment, leak; nothing where it is not known.
 [[nodiscard]] std::optional<double> wrong_points(const ErrorRecord& error, std::string_view group,
                                                  std::string_view member);

@@ -51,9 +51,10 @@ std::string mebibytes(std::optional<double> bytes) {
     return bytes ? score(*bytes / (1024.0 * 1024.0)) : std::string(kNone);
 }
 
-std::string in_words(std::string key) {
-    std::replace(key.begin(), key.end(), '_', ' ');
-    return key;
+std::string in_words(std::string_view key) {
+    std::string words(key);
+    std::replace(words.begin(), words.end(), '_', ' ');
+    return words;
 }
 
 std::string kind_in_words(const std::string& kind) {

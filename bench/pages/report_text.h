@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace umbra {
@@ -29,7 +30,7 @@ inline constexpr const char* kNone = "–";  ///< where there is no number
 [[nodiscard]] std::string mebibytes(std::optional<double> bytes);
 
 /// "shadow_zbuffer" as "shadow zbuffer".
-[[nodiscard]] std::string in_words(std::string key);
+[[nodiscard]] std::string in_words(std::string_view key);
 
 /// Kinds of lights ("point") and their positions ("at_infinity") as results.json names them; others are left as they
 /// are.

@@ -53,7 +53,7 @@ std::vector<std::pair<const ErrorColour*, double>> interior_classes(const Method
             for (const ErrorColour& named : kErrorPalette)
                 if (named.group == entry.group && !named.member.empty()) n -= sum_of(method, named.group, named.member);
         } else {
-            for (const std::string& group : error_groups())
+            for (const std::string_view group : kErrorGroups)
                 n += sum_of(
                     method,
                     entry.error_class == ErrorClass::noise ? &ErrorRecord::noise_error : &ErrorRecord::penumbra_error,
@@ -73,9 +73,8 @@ std::string classes_in_words(const MethodRecord& method) {
             return other.first->group == of->group && !other.first->member.empty();
         });
         parts.push_back(fmt::format("{} {}", count(n),
-                                    !entry->member.empty() ? in_words(std::string(entry->key))
-                                    : !entry->group.empty()
-                                        ? (any ? "other " : "") + in_words(std::string(entry->group))
+                                    !entry->member.empty()  ? in_words(entry->key)
+                                    : !entry->group.empty() ? (any ? "other " : "") + in_words(entry->group)
                                     : entry->error_class == ErrorClass::noise ? "by noise"
                                                                               : "in penumbrae"));
     }

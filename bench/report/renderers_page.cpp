@@ -27,7 +27,7 @@ struct Sums {
             points += n, undefined += static_cast<double>(e.undefined);
             false_shadow += wrong_points(e, "false_shadow", "interior").value_or(0);
             false_light += wrong_points(e, "false_light", "interior").value_or(0);
-            for (const std::string& group : error_groups()) edge += wrong_points(e, group, "edge").value_or(0);
+            for (const std::string_view group : kErrorGroups) edge += wrong_points(e, group, "edge").value_or(0);
             squares += e.rmse.value_or(0) * e.rmse.value_or(0) * n, errors += e.bias.value_or(0) * n;
         }
     }

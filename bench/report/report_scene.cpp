@@ -44,7 +44,7 @@ WrongInWords wrong_in_words(const ErrorRecord& error) {
     WrongInWords words;
     words.any = error.terminator.wrong + error.on_boundary > 0;
     std::string special;
-    for (const std::string& group : error_groups()) {
+    for (const std::string_view group : kErrorGroups) {
         if (group == "false_shadow" ? !error.false_shadow : !error.false_light) continue;
         const auto interior = wrong_points(error, group, "interior");
         if (!interior) return {"no point is judged", false};
@@ -54,8 +54,7 @@ WrongInWords wrong_in_words(const ErrorRecord& error) {
         for (const ErrorColour& entry : kErrorPalette)
             if (entry.group == group && !entry.member.empty())
                 if (const auto n = wrong_points(error, group, entry.member); n && *n > 0)
-                    special +=
-                        fmt::format("{}{} {}", special.empty() ? "" : ", ", count(n), in_words(std::string(entry.key)));
+                    special += fmt::format("{}{} {}", special.empty() ? "" : ", ", count(n), in_words(entry.key));
     }
     if (!special.empty()) words.text += fmt::format(" ({})", special);
     return words;

@@ -47,12 +47,13 @@ json rows_by_light(const Results& results,
 
 /// A count of the table of errors: a column of a group of columns.
 struct Column {
-    std::string group, member, title;
+    std::string_view group, member;
+    std::string title;
 };
 
 /// "false_shadow" as "False shadow".
 std::string heading(std::string_view key) {
-    std::string words = in_words(std::string(key));
+    std::string words = in_words(key);
     words[0]          = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
     return words;
 }
@@ -66,10 +67,10 @@ std::vector<Column> counted_columns(const std::vector<MethodRecord>& methods) {
         return false;
     };
     std::vector<Column> columns;
-    const auto add = [&](const std::string& group, std::string_view member, std::string title) {
-        if (is_counted(group, member)) columns.push_back({group, std::string(member), std::move(title)});
+    const auto add = [&](std::string_view group, std::string_view member, std::string title) {
+        if (is_counted(group, member)) columns.push_back({group, member, std::move(title)});
     };
-    for (const std::string& group : error_groups()) {
+    for (const std::string_view group : kErrorGroups) {
         add(group, "interior", "Interior");
         add(group, "edge", "Edge band");
         for (const ErrorColour& entry : kErrorPalette)
@@ -80,7 +81,7 @@ std::vector<Column> counted_columns(const std::vector<MethodRecord>& methods) {
 
 json column_groups(const std::vector<Column>& columns) {
     json groups = json::array();
-    for (const std::string& group : error_groups()) {
+    for (const std::string_view group : kErrorGroups) {
         json titles = json::array();
         for (const Column& column : columns)
             if (column.group == group) titles.push_back(column.title);
