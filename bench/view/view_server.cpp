@@ -4,9 +4,11 @@
 #include <httplib.h>
 
 #include <algorithm>
+#include <functional>
 #include <list>
 #include <mutex>
 #include <random>
+#include <utility>
 
 #include "report_assets.h"
 #include "umbra/bench/pages/page_template.h"
@@ -74,16 +76,17 @@ struct ViewServer::Pages {
         return page;
     }
 
-    /// Runs work(session, request), and writes an error where it throws.
-    template <class Work>
-    void handle(const httplib::Request& request, httplib::Response& response, const Work& work) {
+    using Answer = std::function<std::string(ViewSession&, const ViewRequest&)>;
+
+    /// Writes what `answer` returns, or an error where it throws.
+    void handle(const httplib::Request& request, httplib::Response& response, const char* type, const Answer& answer) {
         try {
             const ViewRequest wanted         = view_request(request.body);
             const std::shared_ptr<Page> page = find(wanted.page);
             const std::unique_lock lock(page->busy, std::try_to_lock);
             if (!lock) return answer_text(response, 409, "the page's last request is still being answered");
             if (!page->session) page->session = std::make_unique<ViewSession>(options.scene);
-            work(*page->session, wanted);
+            response.set_content(answer(*page->session, wanted), type);
         } catch (const UsageError& e) {
             answer_text(response, 400, e.what());
         } catch (const InputError& e) {
@@ -93,9 +96,67 @@ struct ViewServer::Pages {
         }
     }
 
-    void add_routes();
+    /// Refuses what does not come from this machine's browser, opened by the address.
     [[nodiscard]] httplib::Server::HandlerResponse check(const httplib::Request& request,
-                                                         httplib::Response& response) const;
+                                                         httplib::Response& response) const {
+        response.set_header("Cache-Control", "no-store");
+        response.set_header("X-Content-Type-Options", "nosniff");
+        response.set_header("Referrer-Policy", "no-referrer");
+        response.set_header("Content-Security-Policy",
+                            "default-src 'self'; img-src 'self' data: blob:; frame-ancestors 'none'; "
+                            "form-action 'none'; base-uri 'none'");
+        const std::string host = request.get_header_value("Host"), here = fmt::format("127.0.0.1:{}", port),
+                          local  = fmt::format("localhost:{}", port);
+        const std::string origin = request.get_header_value("Origin");
+        const bool is_host       = host == here || host == local;
+        const bool is_origin     = origin.empty() || origin == "http://" + host;
+        if (is_host && is_origin && request.path.starts_with("/" + word + "/"))
+            return httplib::Server::HandlerResponse::Unhandled;
+        answer_text(response, 403, "not the address that umbra view has printed");
+        return httplib::Server::HandlerResponse::Handled;
+    }
+
+    /// `scene`: the record of the scene as its file has it.
+    void add_routes(const ViewedSceneRecord& scene) {
+        const std::string root = "/" + word + "/";
+        server.set_payload_max_length(kMostBytes);
+        server.set_tcp_nodelay(true);  // the body of a short answer would wait 40 ms for the head to be acknowledged
+        server.set_read_timeout(5);
+        server.set_write_timeout(5);
+        server.set_keep_alive_timeout(5);
+        server.new_task_queue = [] { return new httplib::ThreadPool(8); };
+        server.set_pre_routing_handler(
+            [this](const httplib::Request& request, httplib::Response& response) { return check(request, response); });
+        const auto get = [&](const char* name, std::string_view content, const char* type) {
+            server.Get(root + name,
+                       [content = std::string(content), type](const httplib::Request&, httplib::Response& response) {
+                           response.set_content(content, type);
+                       });
+        };
+        const PageHead head{"Umbra view: " + scene_name(options.scene), "", {"view.js"}};
+        get("", render_page(assets::view_html, head, {{"scene", scene_name(options.scene)}}),
+            "text/html; charset=utf-8");
+        get("report.css", assets::report_css, "text/css; charset=utf-8");
+        get("view.css", assets::view_css, "text/css; charset=utf-8");
+        get("view.js", assets::view_js, "text/javascript; charset=utf-8");
+        get("scene.json", json_text(to_record(scene)), "application/json");
+        const auto post = [&](const char* name, const char* type, Answer answer) {
+            server.Post(root + name, [this, type, answer = std::move(answer)](const httplib::Request& request,
+                                                                              httplib::Response& response) {
+                handle(request, response, type, answer);
+            });
+        };
+        post("show", "application/octet-stream", [this](ViewSession& session, const ViewRequest& wanted) {
+            return packed(session.show(wanted, options.most));
+        });
+        post("why", "application/json", [this](ViewSession& session, const ViewRequest& wanted) {
+            return json_text(to_record(session.why(wanted, options.most)));
+        });
+        post("file", "application/json", [this](ViewSession& session, const ViewRequest& wanted) {
+            static_cast<void>(session.show(wanted, options.most));
+            return session.scene_text();
+        });
+    }
 
     ViewerOptions options;
     std::string word;
@@ -104,72 +165,7 @@ struct ViewServer::Pages {
     std::mutex mutex;                       ///< of the next two
     std::list<std::shared_ptr<Page>> open;  ///< the last that asked first
     std::unique_ptr<ViewSession> spare;     ///< loaded ahead, for the first page
-    std::string scene;                      ///< its record, as JSON
 };
-
-/// Refuses what does not come from this machine's browser, opened by the address.
-httplib::Server::HandlerResponse ViewServer::Pages::check(const httplib::Request& request,
-                                                          httplib::Response& response) const {
-    response.set_header("Cache-Control", "no-store");
-    response.set_header("X-Content-Type-Options", "nosniff");
-    response.set_header("Referrer-Policy", "no-referrer");
-    response.set_header(
-        "Content-Security-Policy",
-        "default-src 'self'; img-src 'self' data: blob:; frame-ancestors 'none'; form-action 'none'; base-uri 'none'");
-    const std::string host = request.get_header_value("Host"), here = fmt::format("127.0.0.1:{}", port),
-                      local  = fmt::format("localhost:{}", port);
-    const std::string origin = request.get_header_value("Origin");
-    const bool is_host       = host == here || host == local;
-    const bool is_origin     = origin.empty() || origin == "http://" + host;
-    if (is_host && is_origin && request.path.starts_with("/" + word + "/"))
-        return httplib::Server::HandlerResponse::Unhandled;
-    answer_text(response, 403, "not the address that umbra view has printed");
-    return httplib::Server::HandlerResponse::Handled;
-}
-
-void ViewServer::Pages::add_routes() {
-    const std::string root = "/" + word + "/";
-    server.set_payload_max_length(kMostBytes);
-    server.set_tcp_nodelay(true);  // the body of a short answer would wait 40 ms for the head to be acknowledged
-    server.set_read_timeout(5);
-    server.set_write_timeout(5);
-    server.set_keep_alive_timeout(5);
-    server.new_task_queue = [] { return new httplib::ThreadPool(8); };
-    server.set_pre_routing_handler(
-        [this](const httplib::Request& request, httplib::Response& response) { return check(request, response); });
-    server.Get(root, [this](const httplib::Request&, httplib::Response& response) {
-        const PageHead head{"Umbra view: " + scene_name(options.scene), "", {"view.js"}};
-        response.set_content(render_page(assets::view_html, head, {{"scene", scene_name(options.scene)}}),
-                             "text/html; charset=utf-8");
-    });
-    const auto asset = [&](const char* name, std::string_view content, const char* type) {
-        server.Get(root + name, [content, type](const httplib::Request&, httplib::Response& response) {
-            response.set_content(std::string(content), type);
-        });
-    };
-    asset("report.css", assets::report_css, "text/css; charset=utf-8");
-    asset("view.css", assets::view_css, "text/css; charset=utf-8");
-    asset("view.js", assets::view_js, "text/javascript; charset=utf-8");
-    server.Get(root + "scene.json", [this](const httplib::Request&, httplib::Response& response) {
-        response.set_content(scene, "application/json");
-    });
-    server.Post(root + "show", [this](const httplib::Request& request, httplib::Response& response) {
-        handle(request, response, [&](ViewSession& session, const ViewRequest& wanted) {
-            response.set_content(packed(session.show(wanted, options.most)), "application/octet-stream");
-        });
-    });
-    server.Post(root + "why", [this](const httplib::Request& request, httplib::Response& response) {
-        handle(request, response, [&](ViewSession& session, const ViewRequest& wanted) {
-            response.set_content(json_text(to_record(session.why(wanted, options.most))), "application/json");
-        });
-    });
-    server.Post(root + "file", [this](const httplib::Request& request, httplib::Response& response) {
-        handle(request, response, [&](ViewSession& session, const ViewRequest& wanted) {
-            static_cast<void>(session.show(wanted, options.most));
-            response.set_content(session.scene_text(), "application/json");
-        });
-    });
-}
 
 ViewServer::ViewServer(const ViewerOptions& options) : pages_(std::make_unique<Pages>(options)) {
     Pages& p                 = *pages_;
@@ -178,8 +174,7 @@ ViewServer::ViewServer(const ViewerOptions& options) : pages_(std::make_unique<P
     record.chosen            = options.methods;
     record.command           = "umbra compare " + options.scene.string() + " --methods";
     for (const std::string& method : options.methods) record.command += " " + method;
-    p.scene = json_text(to_record(record));
-    p.add_routes();
+    p.add_routes(record);
     const bool any = options.port == 0;
     p.port         = any ? p.server.bind_to_any_port("127.0.0.1") : options.port;
     if (p.port <= 0 || (!any && !p.server.bind_to_port("127.0.0.1", options.port)))
