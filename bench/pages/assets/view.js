@@ -9,16 +9,22 @@ const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a
 const size = (a) => Math.hypot(...a);
 const scaled = (a, s) => a.map((x) => x * s);
 const unit = (a) => scaled(a, 1 / (size(a) || 1));
-const element = (name, attributes = {}, text = "") => {
-  const e = document.createElement(name);
+const withAttributes = (e, attributes) => {
   for (const [key, value] of Object.entries(attributes)) e.setAttribute(key, value);
+  return e;
+};
+const element = (name, attributes = {}, text = "") => {
+  const e = withAttributes(document.createElement(name), attributes);
   if (text) e.textContent = text;
   return e;
 };
-const shape = (name, attributes) => {
-  const e = document.createElementNS("http://www.w3.org/2000/svg", name);
-  for (const [key, value] of Object.entries(attributes)) e.setAttribute(key, value);
-  return e;
+const shape = (name, attributes) => withAttributes(document.createElementNS("http://www.w3.org/2000/svg", name), attributes);
+/** An item of a list, behind a patch of the colour. */
+const swatched = (colour, text) => {
+  const item = element("li"), swatch = element("span", { class: "swatch" });
+  swatch.style.background = colour;
+  item.append(swatch, text);
+  return item;
 };
 const figure = (x) => (x === null || x === undefined ? "–" : x === 0 ? "0" : x >= 100 ? x.toFixed(0) : x >= 0.01 ? x.toPrecision(3) : x.toExponential(1));
 
@@ -192,10 +198,6 @@ function handle(kind, p, label, move) {
   const x = Math.min(Math.max(at.x, r), w - r), y = Math.min(Math.max(at.y, r), h - r);  // in reach, where it is outside
   const circle = shape("circle", { cx: x, cy: y, r: kind === "aim" ? 0.7 * r : r, class: "handle " + kind, tabindex: 0, role: "button", "aria-label": label });
   circle.dataset.key = kind + label;
-  const by = (dx, dy, dz) => {
-    const here = project(p);
-    move(add(position(here.x + dx, here.y + dy, here.depth), view().forward, dz));
-  };
   circle.addEventListener("pointerdown", (event) => {
     event.stopPropagation();
     event.preventDefault();
@@ -208,7 +210,8 @@ function handle(kind, p, label, move) {
     if (!way) return;
     event.preventDefault();
     event.stopPropagation();
-    by(...way);
+    const here = project(p), [dx, dy, dz] = way;
+    move(add(position(here.x + dx, here.y + dy, here.depth), view().forward, dz));
   });
   $("over").append(circle);
 }
@@ -272,10 +275,8 @@ function drawFigures() {
   const errors = $("errors");
   errors.replaceChildren();
   const truth = last.truth;
-  if (!truth) errors.append(element("p", { class: "small" }, "The truth is computed when the picture rests."));
-  if (truth && truth.failed) errors.append(element("p", { class: "small" }, truth.failed));
-  if (truth && !truth.failed)
-    errors.append(element("p", { class: "small" }, `The truth: ${truth.method}${truth.exact ? "" : ", which is not exact"}, in ${figure(truth.ms)} ms` +
+  errors.append(element("p", { class: "small" }, !truth ? "The truth is computed when the picture rests." : truth.failed ||
+    `The truth: ${truth.method}${truth.exact ? "" : ", which is not exact"}, in ${figure(truth.ms)} ms` +
       (truth.judged < truth.of ? `; at a sample of ${truth.judged} of ${truth.of} points` : `; at all ${truth.of} points`)));
   for (const side of last.sides) {
     if (!side.errors) continue;
@@ -283,13 +284,7 @@ function drawFigures() {
     errors.append(element("p", {}, `${side.method}: ${e.wrong_interior} wrong interior points of ${e.points}, RMSE ${figure(e.rmse)}` + (e.flip === null ? "" : `, mean FLIP ${figure(e.flip)}`) +
       (e.undefined ? `, ${e.undefined} undefined` : "") + (e.on_boundary ? `, ${e.on_boundary} on the boundary` : "")));
     const list = element("ul", { class: "small" });
-    for (const c of e.classes) {
-      const item = element("li");
-      const swatch = element("span", { class: "swatch" });
-      swatch.style.background = c.colour;
-      item.append(swatch, `${c.name}: ${c.points}`);
-      list.append(item);
-    }
+    for (const c of e.classes) list.append(swatched(c.colour, `${c.name}: ${c.points}`));
     if (e.classes.length) errors.append(list);
   }
   if (state.layer !== "picture" && state.layer !== "visibility" && last.sides.some((s) => s.layer !== state.layer))
@@ -306,14 +301,11 @@ function drag(event, moved, done = () => {}) {
   const move = (e) => { if (e.pointerId === event.pointerId) moved(e); };
   const end = (e) => {
     if (e.pointerId !== event.pointerId) return;
-    stage.removeEventListener("pointermove", move);
-    stage.removeEventListener("pointerup", end);
-    stage.removeEventListener("pointercancel", end);
+    for (const [type, listener] of listeners) stage.removeEventListener(type, listener);
     done(e);
   };
-  stage.addEventListener("pointermove", move);
-  stage.addEventListener("pointerup", end);
-  stage.addEventListener("pointercancel", end);
+  const listeners = [["pointermove", move], ["pointerup", end], ["pointercancel", end]];
+  for (const [type, listener] of listeners) stage.addEventListener(type, listener);
 }
 function orbit(dx, dy) {
   const arm = add(state.eye, state.target, -1), up = unit(scene.up);
@@ -454,12 +446,7 @@ function drawSeen(seen, sampled) {
     if (cell >= 0) blockers.set(cell, (blockers.get(cell) || 0) + 1);
   });
   const on = seen.cells.filter((c) => c !== -2).length, list = element("ul", { class: "small" });
-  const row = (colour, text) => {
-    const item = element("li"), swatch = element("span", { class: "swatch" });
-    swatch.style.background = colour;
-    item.append(swatch, text);
-    list.append(item);
-  };
+  const row = (colour, text) => list.append(swatched(colour, text));
   row("#ffe9a0", `seen: ${(100 * seen.fraction).toFixed(1)} % of ${on} places on the light, by rays`);
   for (const [o, count] of blockers) row(hue(o), `behind ${scene.objects[o].name}: ${(100 * count / on).toFixed(1)} %`);
   if (seen.cells.includes(-3)) row("#55555c", "behind the plane of the point");
@@ -480,7 +467,6 @@ function drawSeen(seen, sampled) {
 
 // ---- controls
 
-function methodText(k) { return state.methods[k]; }
 /** NAME:k=v,... as the name and its settings; presets stand for theirs. */
 function parsed(text) {
   const [head, settings = ""] = text.split(/:(.*)/s), [name, preset] = head.split("@");
@@ -500,7 +486,7 @@ function showMethods() {
   $("methods").replaceChildren();
   const shown = state.second === "method" ? 2 : 1;
   for (let k = 0; k < shown; ++k) {
-    const { info, values } = parsed(methodText(k));
+    const { info, values } = parsed(state.methods[k]);
     const field = element("fieldset", { class: "method" });
     field.append(element("legend", {}, shown > 1 ? (k ? "Right: method" : "Left: method") : "Method"));
     const choose = element("select", { "aria-label": "Method" });
@@ -533,16 +519,13 @@ function parameterControl(k, info, values, p) {
   } else if (p.type === "boolean") {
     input = element("input", { type: "checkbox" });
     input.checked = String(now) === "true";
-  } else if (p.type === "text") {
-    input = element("input", { type: "text" });
-    input.value = now;
   } else {
-    input = element("input", { type: "number", min: p.min, max: p.max, step: p.type === "integer" ? 1 : "any" });
+    input = element("input", p.type === "text" ? { type: "text" } : { type: "number", min: p.min, max: p.max, step: p.type === "integer" ? 1 : "any" });
     input.value = now;
   }
   input.addEventListener(p.type === "real" || p.type === "integer" ? "input" : "change", () => {
     if (!input.checkValidity() || input.value === "") { $("message").textContent = `${p.name}: expected ${p.min} to ${p.max}`; return; }
-    setMethod(k, info, { ...parsed(methodText(k)).values, [p.name]: p.type === "boolean" ? input.checked : input.value });
+    setMethod(k, info, { ...parsed(state.methods[k]).values, [p.name]: p.type === "boolean" ? input.checked : input.value });
   });
   label.append(input, element("span", { class: "doc" }, p.doc));
   return label;
