@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "report_assets.h"
 #include "umbra/bench/pages/page_template.h"
@@ -123,15 +125,8 @@ std::vector<HistoryCell> compared(std::vector<KeptRun> runs) {
 }
 
 std::string_view word_of(Kind kind) {
-    switch (kind) {
-        case Kind::absent: return "absent";
-        case Kind::refused: return "refused";
-        case Kind::wrong: return "wrong";
-        case Kind::slower: return "slower";
-        case Kind::equal: return "equal";
-        case Kind::faster: return "faster";
-    }
-    return "";
+    constexpr std::array<std::string_view, 6> kWords{"absent", "refused", "wrong", "slower", "equal", "faster"};
+    return kWords[static_cast<std::size_t>(kind)];
 }
 
 bool is_timed(const HistoryCell& cell) { return cell.kind >= Kind::slower && cell.ms > 0; }
@@ -195,19 +190,15 @@ std::string history_text(const History& history) {
         for (const HistoryRow& row : history.rows) {
             const HistoryCell& cell = row.cells[commit];
             ++counts[cell.kind];
-            if (cell.kind == Kind::wrong)
+            if (cell.kind == Kind::wrong || cell.kind == Kind::slower)
                 cells +=
-                    fmt::format("{}: {} {}: wrong: {}\n", history.commits[commit], row.scene, row.method, cell.says);
-            if (cell.kind == Kind::slower)
-                cells += fmt::format("{}: {} {}: slower: {}\n", history.commits[commit], row.scene, row.method,
-                                     change_in_words(cell.ratio));
+                    fmt::format("{}: {} {}: {}: {}\n", history.commits[commit], row.scene, row.method,
+                                word_of(cell.kind), cell.kind == Kind::wrong ? cell.says : change_in_words(cell.ratio));
         }
         text += history.commits[commit] + ":";
-        char separator = ' ';
-        for (const auto& [kind, n] : counts) {
-            text += fmt::format("{}{} {}", separator == ' ' ? " " : ", ", n, word_of(kind));
-            separator = ',';
-        }
+        const char* separator = " ";
+        for (const auto& [kind, n] : counts)
+            text += fmt::format("{}{} {}", std::exchange(separator, ", "), n, word_of(kind));
         text += "\n";
     }
     return text + cells;
