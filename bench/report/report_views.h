@@ -40,8 +40,4 @@ namespace umbra {
 /// false where the record has no times in turns.
 [[nodiscard]] nlohmann::json time_ratio_view(const Results& results);
 
-/// An entry for each light and each method with wrong interior points at it: its points, each with a piece of the class
-/// picture around it, the reasons and their difference in words.
-[[nodiscard]] nlohmann::json why_view(const SceneFiles& scene);
-
 }  // namespace umbra
