@@ -56,26 +56,7 @@ std::string render_page(std::string_view page, const PageHead& head, json view) 
     view["scripts"]              = head.scripts;
     view["language"]             = head.language;
     kainjow::mustache::data data = template_data(view);
-    for (const auto& [name, partial] : {std::pair{"head", assets::head_html},
-                                        {"bias_map", assets::bias_map_html},
-                                        {"failures_note", assets::failures_note_html},
-                                        {"picture", assets::picture_html},
-                                        {"slider", assets::slider_html},
-                                        {"found_picture", assets::found_picture_html},
-                                        {"why_point", assets::why_point_html},
-                                        {"classes", assets::classes_html},
-                                        {"ladder_table", assets::ladder_table_html},
-                                        {"textbook_table", assets::textbook_table_html},
-                                        {"break_pictures", assets::break_pictures_html},
-                                        {"formula_chart", assets::formula_chart_html},
-                                        {"setup", assets::setup_html},
-                                        {"scales", assets::scales_html},
-                                        {"study_table", assets::study_table_html},
-                                        {"study_words", assets::study_words_html},
-                                        {"study_picture", assets::study_picture_html},
-                                        {"study_curve", assets::study_curve_html},
-                                        {"scale_colours", assets::scale_colours_html}})
-        data.set(name, std::string(partial));
+    for (const auto& [name, text] : assets::page_parts) data.set(std::string(name), std::string(text));
     kainjow::mustache::mustache text{std::string(page)};
     const std::string html = text.render(data);
     if (!text.is_valid()) throw std::logic_error("report template: " + text.error_message());

@@ -22,8 +22,8 @@ struct PageHead {
     std::string language = "en";       ///< of the page's text, as HTML names it
 };
 
-/// A page from its template. Parts that pages share are partials, named as their files. Of a view's values, strings,
-/// lists, objects, true and false have a meaning; an empty string or list is false.
+/// A page from its template. Parts that pages share (bench/pages/assets/parts) are partials, named as their files. Of a
+/// view's values, strings, lists, objects, true and false have a meaning; an empty string or list is false.
 [[nodiscard]] std::string render_page(std::string_view page, const PageHead& head, nlohmann::json view);
 
 /// Style and scripts of pages with these heads, written to `folder`. Throws InputError.
