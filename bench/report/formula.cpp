@@ -29,12 +29,12 @@ mu::Parser parser_of_formulas() {
     add("asin", [](double a) { return std::asin(a) / kDegree; });
     add("acos", [](double a) { return std::acos(a) / kDegree; });
     add("atan", [](double a) { return std::atan(a) / kDegree; });
-    parser.DefineFun("min",
-                     static_cast<double (*)(double, double)>([](double a, double b) { return std::fmin(a, b); }));
-    parser.DefineFun("max",
-                     static_cast<double (*)(double, double)>([](double a, double b) { return std::fmax(a, b); }));
-    parser.DefineFun("if", static_cast<double (*)(double, double, double)>(
-                               [](double holds, double a, double b) { return holds != 0 ? a : b; }));
+    parser.DefineFun(
+        "min", +[](double a, double b) { return std::fmin(a, b); });
+    parser.DefineFun(
+        "max", +[](double a, double b) { return std::fmax(a, b); });
+    parser.DefineFun(
+        "if", +[](double holds, double a, double b) { return holds != 0 ? a : b; });
     parser.DefineConst("pi", std::numbers::pi);
     return parser;
 }

@@ -18,15 +18,11 @@ std::vector<LectureValue> values_from(const json& values) {
     return all;
 }
 
-FigureKind kind_named(const std::string& name) {
-    return name == "count" ? FigureKind::count : name == "percent" ? FigureKind::percent : FigureKind::score;
-}
-
 std::optional<LectureShow> show_from(const json& topic) {
     if (!topic.contains("pictures")) return std::nullopt;
     LectureShow show{topic.value("study", ""), values_from(topic["pictures"]), {}, topic.value("shadows", true)};
     for (const json& figure : topic.value("figures", json::array()))
-        show.figures.push_back({figure["what"], kind_named(figure["kind"]), values_from(figure["values"])});
+        show.figures.push_back({figure["what"], figure["kind"], values_from(figure["values"])});
     return show;
 }
 
@@ -37,12 +33,9 @@ Field entry(const Field& array, std::string_view name) {
     return found == items.end() ? Field{} : *found;
 }
 
-std::string figure_of(const Field& value, FigureKind kind) {
-    switch (kind) {
-        case FigureKind::count: return count(value.number());
-        case FigureKind::percent: return percent(value.number());
-        case FigureKind::score: break;
-    }
+std::string figure_of(const Field& value, std::string_view kind) {
+    if (kind == "count") return count(value.number());
+    if (kind == "percent") return percent(value.number());
     return score(value.number());
 }
 

@@ -21,12 +21,10 @@ struct LectureValue {
     std::string frame{};  ///< "@1": of the results.json of that frame of the scene
 };
 
-enum class FigureKind { score, count, percent };
-
 /// A measured property, of one thing or of several that the page names.
 struct LectureFigure {
     std::string what;
-    FigureKind kind;
+    std::string kind;  ///< "score", "count" or "percent": how the page writes it
     std::vector<LectureValue> values;
 };
 

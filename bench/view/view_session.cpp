@@ -41,8 +41,6 @@ void append_bytes(const Image& image, std::vector<std::uint8_t>& bytes) {
 /// Places along each side of the light at which it is looked for.
 constexpr int kSeenSide = 48;
 
-Image blank(int width, int height) { return {width, height, {"R", "G", "B"}}; }
-
 Image final_picture(const Scene& scene, const PointBatch& points, const std::vector<VisibilityPlane>& planes) {
     return displayed(shade(scene, points, planes), scene.tone, scene.exposure);
 }
@@ -53,8 +51,7 @@ Moved ViewSession::place(const ViewRequest& request) {
     Moved moved = posed_.place(request);
     if (moved.all) sides_.clear();
     const std::size_t lights = posed_.scene().lights.size();
-    bool any                 = moved.camera || moved.objects;
-    for (const bool light : moved.lights) any = any || light;
+    const bool any = moved.camera || moved.objects || std::ranges::find(moved.lights, true) != moved.lights.end();
     if (moved.objects) rays_.reset();
     if (any) truth_.reset(), truth_level_ = 0, truth_failed_.clear();
     for (Side& side : sides_) {
@@ -173,7 +170,7 @@ ViewReply ViewSession::show(const ViewRequest& request, const Budget& most) {
     const auto pictures = [&] {
         for (const Side& side : sides_) {
             SideRecord shown = side_record(side);
-            Image picture    = blank(width, height);
+            Image picture(width, height, {"R", "G", "B"});
             if (!shown.phases.empty() && !scene.lights.empty()) {
                 std::optional<Image> of_errors;
                 if (truth_) of_errors = add_errors(side, request, shown);
