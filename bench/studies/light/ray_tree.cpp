@@ -52,23 +52,23 @@ ShadowRay in_ray_space(const RaySpace& space, const Ray& ray) {
     return traced;
 }
 
-/// Where a ray is on the plane of a triangle (a, b, c): b and c weigh u and v. Not finite where it runs along it.
+/// Where a ray is on the plane of triangle t: its second and third vertex weigh u and v. Not finite where it runs along
+/// the plane.
 struct OnPlane {
     double u, v, t;
 };
 // In the order of the operations of PointWriter in gbuffer.cpp, so that both find the same bits.
-OnPlane meet_plane(dvec3 origin, dvec3 direction, dvec3 a, dvec3 b, dvec3 c) {
-    const dvec3 ab = b - a, ac = c - a, from_a = origin - a;
-    const dvec3 n = glm::cross(ab, ac), m = glm::cross(from_a, direction);
-    const double over = -1 / glm::dot(n, direction);
+OnPlane meet_plane(const Scene& scene, const Ray& ray, TriangleId t) {
+    const dvec3 a(scene.vertex(t, 0)), ab = dvec3(scene.vertex(t, 1)) - a, ac = dvec3(scene.vertex(t, 2)) - a;
+    const dvec3 from_a = ray.origin - a, n = glm::cross(ab, ac), m = glm::cross(from_a, ray.direction);
+    const double over = -1 / glm::dot(n, ray.direction);
     return {glm::dot(m, ac) * over, glm::dot(m, ab) * -over, glm::dot(n, from_a) * over};
 }
 
 /// Point i of the batch: where the ray meets triangle t, seen from the ray's side.
 void write_point(PointBatch& batch, std::size_t i, const Scene& scene, TriangleId t, const Ray& ray) {
     if (t == kNoTriangle) return;
-    const OnPlane on = meet_plane(ray.origin, ray.direction, dvec3(scene.vertex(t, 0)), dvec3(scene.vertex(t, 1)),
-                                  dvec3(scene.vertex(t, 2)));
+    const OnPlane on = meet_plane(scene, ray, t);
     const bool known = std::isfinite(on.u) && std::isfinite(on.v);
     set_point(batch, i, scene, t, known ? static_cast<float>(on.u) : 1.0f / 3,
               known ? static_cast<float>(on.v) : 1.0f / 3);
@@ -82,20 +82,16 @@ void face_ray(PointBatch& batch, std::size_t i, const Scene& scene, dvec3 direct
     batch.flipped[i] = batch.flipped[i] == 0 ? 1 : 0;
 }
 
-/// What the rays of a level meet.
-void meet(const RayScene& rays, const Scene& scene, RayTree& tree, std::size_t level) {
-    PointBatch& points = tree.levels[level].points;
-    points.eye         = tree.levels[0].points.eye;
-    points.resize(tree.levels[level].rays.size());
+/// Calls write(points, i, scene, t, ray) for every point of the batch, with the triangle t that `ray_of(i)` meets.
+template <class RayOf, class Write>
+void meet(const RayScene& rays, const Scene& scene, PointBatch& points, const RayOf& ray_of, const Write& write) {
     parallel_ranges(points.size(), 512, [&](std::size_t begin, std::size_t end) {
         std::vector<TriangleId> met(end - begin);
         {
             const FlushDenormals flush;
-            for (std::size_t i = begin; i < end; ++i)
-                met[i - begin] = first_by_tree(rays, secondary_ray(scene, tree, level, i));
+            for (std::size_t i = begin; i < end; ++i) met[i - begin] = first_by_tree(rays, ray_of(i));
         }
-        for (std::size_t i = begin; i < end; ++i)
-            set_met_point(points, i, scene, met[i - begin], secondary_ray(scene, tree, level, i));
+        for (std::size_t i = begin; i < end; ++i) write(points, i, scene, met[i - begin], ray_of(i));
     });
 }
 
@@ -241,11 +237,6 @@ std::vector<SecondaryRay> spawn(const Scene& scene, RayTree& tree, std::size_t l
     return rays;
 }
 
-void count_kinds(RayLevel& level) {
-    for (const SecondaryRay& ray : level.rays)
-        ++(ray.kind == RayKind::reflected ? level.counts.reflected : level.counts.refracted);
-}
-
 std::uint64_t asked(const PointBatch& points) {
     std::uint64_t pairs = 0;
     for (LightId j = 0; j < points.facing.size(); ++j)
@@ -268,8 +259,10 @@ RayTree trace_rays(const Scene& scene, RayLevel eye, const TreeOptions& options,
         tree.spawn_ms += start.ms();
         tree.levels[level].counts.shadow = asked(tree.levels[level].points);
         if (next.empty()) return tree;
-        tree.levels.emplace_back().rays = std::move(next);
-        count_kinds(tree.levels.back());
+        RayLevel& below = tree.levels.emplace_back();
+        below.rays      = std::move(next);
+        for (const SecondaryRay& ray : below.rays)
+            ++(ray.kind == RayKind::reflected ? below.counts.reflected : below.counts.refracted);
         meet(tree, level + 1);
     }
 }
@@ -279,10 +272,14 @@ RayTree trace_rays(const RayScene& rays, const Scene& scene, PointBatch eye, con
     first.points = std::move(eye);
     return trace_rays(scene, std::move(first), options, [&](RayTree& tree, std::size_t level) {
         const Stopwatch traced;
-        meet(rays, scene, tree, level);
+        PointBatch& points = tree.levels[level].points;
+        points.eye         = tree.levels[0].points.eye;
+        points.resize(tree.levels[level].rays.size());
+        meet(
+            rays, scene, points, [&](std::size_t i) { return secondary_ray(scene, tree, level, i); }, set_met_point);
         tree.trace_ms += traced.ms();
         const Stopwatch met;
-        face_lights(tree.levels[level].points, scene);
+        face_lights(points, scene);
         tree.face_ms += met.ms();
     });
 }
@@ -328,14 +325,7 @@ PointBatch trace_eye_rays(const RayScene& rays, const Scene& scene, const Camera
         const dvec3 at = (raster.eye - dvec3(space.centre)) * scale + (column - row);
         return Ray{at * unit + dvec3(space.centre), raster.forward, kNoTriangle, dvec3(0), forever, true};
     };
-    parallel_ranges(points.size(), 512, [&](std::size_t begin, std::size_t end) {
-        std::vector<TriangleId> met(end - begin);
-        {
-            const FlushDenormals flush;
-            for (std::size_t i = begin; i < end; ++i) met[i - begin] = first_by_tree(rays, ray_of(i));
-        }
-        for (std::size_t i = begin; i < end; ++i) write_point(points, i, scene, met[i - begin], ray_of(i));
-    });
+    meet(rays, scene, points, ray_of, write_point);
     face_lights(points, scene);
     return points;
 }
@@ -364,18 +354,13 @@ TriangleId first_by_search(const RayScene& rays, const Scene& scene, const Ray& 
     double nearest     = ray.reach;
     for (TriangleId t = 0; t < scene.triangles.size(); ++t) {
         if (t == ray.from || (ray.is_of_eye && !scene.switches(t).seen_by_camera)) continue;
-        const OnPlane on = meet_plane(ray.origin, ray.direction, dvec3(scene.vertex(t, 0)), dvec3(scene.vertex(t, 1)),
-                                      dvec3(scene.vertex(t, 2)));
+        const OnPlane on = meet_plane(scene, ray, t);
         if (on.u >= 0 && on.v >= 0 && on.u + on.v <= 1 && on.t > start && on.t < nearest) first = t, nearest = on.t;
     }
     return first;
 }
 
-double distance_to_plane(const Scene& scene, const Ray& ray, TriangleId t) {
-    return meet_plane(ray.origin, ray.direction, dvec3(scene.vertex(t, 0)), dvec3(scene.vertex(t, 1)),
-                      dvec3(scene.vertex(t, 2)))
-        .t;
-}
+double distance_to_plane(const Scene& scene, const Ray& ray, TriangleId t) { return meet_plane(scene, ray, t).t; }
 
 dvec3 incoming(const RayTree& tree, std::size_t level, std::size_t i) {
     if (level > 0) return tree.levels[level].rays[i].direction;
