@@ -47,35 +47,20 @@ std::optional<dvec3> place_on_mirror(const MirrorPlane& plane, const Light& ligh
     return p + height / (height + above) * (l - 2 * above * plane.normal - p);
 }
 
-class MirrorPaths {
-public:
-    MirrorPaths(const RayScene& rays, const Scene& scene, const Light& light)
-        : rays_(rays), scene_(scene), light_(light) {}
-
-    /// Whether the light reaches p, on triangle `from` with the unit normal n, over this plane.
-    [[nodiscard]] bool free(const MirrorPlane& plane, dvec3 p, TriangleId from, dvec3 n) const {
-        const std::optional<dvec3> mirror = place_on_mirror(plane, light_, p);
-        if (!mirror || glm::length(*mirror - p) == 0) return false;
-        const dvec3 d = glm::normalize(*mirror - p);
-        if (glm::dot(d, n) <= 0) return false;
-        const TriangleId met = first_by_tree(rays_, {p, d, from, n});
-        if (met == kNoTriangle || !(scene_.material(met).reflect > 0) || !lies_in(plane, met)) return false;
-        if (!(falloff(light_, vec3(*mirror)) > 0)) return false;
-        const Towards on = towards(light_, *mirror);
-        return first_by_tree(rays_, {*mirror, on.direction, met, plane.normal, on.distance * (1 - 1e-5)}) ==
-               kNoTriangle;
-    }
-
-private:
-    [[nodiscard]] bool lies_in(const MirrorPlane& plane, TriangleId t) const {
-        const dvec3 n = glm::normalize(area_normal(scene_, t));
-        return std::abs(glm::dot(n, plane.normal)) > 1 - 1e-6;
-    }
-
-    const RayScene& rays_;
-    const Scene& scene_;
-    const Light& light_;
-};
+/// Whether the light reaches p, on triangle `from` with the unit normal n, over this plane.
+bool reaches_over(const MirrorPlane& plane, const RayScene& rays, const Scene& scene, const Light& light, dvec3 p,
+                  TriangleId from, dvec3 n) {
+    const std::optional<dvec3> mirror = place_on_mirror(plane, light, p);
+    if (!mirror || glm::length(*mirror - p) == 0) return false;
+    const dvec3 d = glm::normalize(*mirror - p);
+    if (glm::dot(d, n) <= 0) return false;
+    const TriangleId met = first_by_tree(rays, {p, d, from, n});
+    if (met == kNoTriangle || !(scene.material(met).reflect > 0)) return false;
+    if (!(std::abs(glm::dot(glm::normalize(area_normal(scene, met)), plane.normal)) > 1 - 1e-6)) return false;
+    if (!(falloff(light, vec3(*mirror)) > 0)) return false;
+    const Towards on = towards(light, *mirror);
+    return first_by_tree(rays, {*mirror, on.direction, met, plane.normal, on.distance * (1 - 1e-5)}) == kNoTriangle;
+}
 
 }  // namespace
 
@@ -106,14 +91,14 @@ std::vector<MirrorPlane> mirror_planes(const Scene& scene, std::size_t most) {
 std::vector<std::uint8_t> lit_by_mirrors(const RayScene& rays, const Scene& scene, const PointBatch& points,
                                          LightId light, const std::vector<MirrorPlane>& planes) {
     std::vector<std::uint8_t> lit(points.size(), 0);
-    const MirrorPaths paths(rays, scene, scene.lights[light]);
     parallel_ranges(points.size(), 512, [&](std::size_t begin, std::size_t end) {
         const FlushDenormals flush;
         for (std::size_t i = begin; i < end; ++i) {
             if (points.triangle[i] == kNoTriangle) continue;
             const dvec3 p = exact_position(scene, points, i), n = glm::normalize(dvec3(points.normal(i)));
-            lit[i] = std::ranges::any_of(
-                planes, [&](const MirrorPlane& plane) { return paths.free(plane, p, points.triangle[i], n); });
+            lit[i] = std::ranges::any_of(planes, [&](const MirrorPlane& plane) {
+                return reaches_over(plane, rays, scene, scene.lights[light], p, points.triangle[i], n);
+            });
         }
     });
     return lit;
