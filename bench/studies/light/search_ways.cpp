@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <optional>
 #include <utility>
+
+#include "umbra/bench/studies/light/formula_bodies.h"
 
 namespace umbra {
 namespace {
@@ -22,18 +26,8 @@ int longest_axis(dvec3 extent) {
 
 /// Where the ray enters the box, from 0 on; kNever where it passes by.
 double enters_box(dvec3 low, dvec3 high, const Ray& ray) {
-    double from = 0, to = kNever;
-    for (int a = 0; a < 3; ++a) {
-        const double o = ray.origin[a], d = ray.direction[a];
-        if (d == 0) {
-            if (o < low[a] || o > high[a]) return kNever;
-            continue;
-        }
-        const double one = (low[a] - o) / d, other = (high[a] - o) / d;
-        from = std::max(from, std::min(one, other));
-        to   = std::min(to, std::max(one, other));
-    }
-    return from <= to ? from : kNever;
+    const std::optional<Passage> inside = through_box(ray.origin, ray.direction, low, high);
+    return inside && inside->leave >= 0 ? std::max(0.0, inside->enter) : kNever;
 }
 
 double enters_sphere(dvec3 centre, double radius, const Ray& ray) {
@@ -41,13 +35,6 @@ double enters_sphere(dvec3 centre, double radius, const Ray& ray) {
     const double along = glm::dot(to, ray.direction), square = radius * radius - (glm::dot(to, to) - along * along);
     if (square < 0 || along + std::sqrt(square) < 0) return kNever;
     return std::max(0.0, along - std::sqrt(square));
-}
-
-/// Whether the boxes touch.
-bool boxes_touch(dvec3 low, dvec3 high, dvec3 other_low, dvec3 other_high) {
-    for (int a = 0; a < 3; ++a)
-        if (other_high[a] < low[a] || other_low[a] > high[a]) return false;
-    return true;
 }
 
 std::pair<dvec3, dvec3> box_of(const Scene& scene, TriangleId t) {
@@ -62,20 +49,9 @@ struct SpaceSearch::Hit {
     double distance     = 0;
 };
 
-std::string_view to_string(SearchWay way) {
-    switch (way) {
-        case SearchWay::spheres: return "spheres";
-        case SearchWay::boxes: return "boxes";
-        case SearchWay::cells: return "cells";
-        case SearchWay::octree: return "octree";
-        case SearchWay::bsp: return "bsp";
-    }
-    return "";
-}
-
 SpaceSearch::SpaceSearch(SearchWay way, const Scene& scene) : way_(way), scene_(scene) {
     Triangles all(scene.triangles.size());
-    for (TriangleId t = 0; t < all.size(); ++t) all[t] = t;
+    std::iota(all.begin(), all.end(), TriangleId{0});
     nodes_.push_back(around(all));
     if (way == SearchWay::cells)
         build_cells(all);
@@ -130,7 +106,8 @@ std::vector<std::pair<SpaceSearch::Node, SpaceSearch::Triangles>> SpaceSearch::p
         Triangles own;
         std::ranges::copy_if(triangles, std::back_inserter(own), [&](TriangleId t) {
             const std::pair<dvec3, dvec3> box = box_of(scene_, t);
-            return boxes_touch(child.low, child.high, box.first, box.second);
+            return glm::all(glm::lessThanEqual(child.low, box.second)) &&
+                   glm::all(glm::lessThanEqual(box.first, child.high));
         });
         if (!own.empty()) children.emplace_back(child, std::move(own));
     }

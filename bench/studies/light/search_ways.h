@@ -26,7 +26,10 @@ enum class SearchWay : std::uint8_t {
 };
 inline constexpr std::array kSearchWays{SearchWay::spheres, SearchWay::boxes, SearchWay::cells, SearchWay::octree,
                                         SearchWay::bsp};
-[[nodiscard]] std::string_view to_string(SearchWay way);
+[[nodiscard]] constexpr std::string_view to_string(SearchWay way) {
+    constexpr std::array<std::string_view, 5> names{"spheres", "boxes", "cells", "octree", "bsp"};
+    return names[static_cast<std::size_t>(way)];
+}
 
 /// How often a ray was intersected with what.
 struct SearchSteps {
