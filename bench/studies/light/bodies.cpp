@@ -306,6 +306,12 @@ private:
     std::vector<TriangleId> triangles_;
 };
 
+/// A body, and the triangles that stand for it.
+struct FoundBody {
+    Body body;
+    std::vector<TriangleId> triangles;
+};
+
 /// One object's mesh, from which bodies are taken away as they are found.
 class ObjectMesh {
 public:
@@ -316,8 +322,7 @@ public:
 
     /// Those among the triangles that are connected by the vertices `vertices_of(t)` has, each below `count`.
     template <class VerticesOf>
-    void find(std::uint32_t count, const VerticesOf& vertices_of, std::vector<Component>& meshes,
-              std::vector<Body>& found) {
+    void find(std::uint32_t count, const VerticesOf& vertices_of, std::vector<FoundBody>& found) {
         std::vector<std::vector<TriangleId>> parts = connect(count, vertices_of);
         const std::vector<bool> closed             = closed_ones(parts.size());
         std::vector<std::optional<Body>> bodies(parts.size());
@@ -329,7 +334,7 @@ public:
                 if (closed[c]) bodies[c] = components[c].as_body();
         });
         for (std::size_t c = 0; c < parts.size(); ++c) {
-            if (bodies[c]) found.push_back(*bodies[c]), meshes.push_back(components[c]);
+            if (bodies[c]) found.push_back({*bodies[c], components[c].triangles()});
             const std::uint32_t now = bodies[c] ? kTaken : kLeft;
             for (const TriangleId t : components[c].triangles()) component_[t - topology_.first_triangle] = now;
         }
@@ -391,8 +396,7 @@ private:
 void find_in_object(const Scene& scene, const Object& object, Bodies& bodies) {
     if (object.triangle_count < kTrianglesOfABox) return;
     ObjectMesh mesh(scene, object);
-    std::vector<Component> meshes;
-    std::vector<Body> found;
+    std::vector<FoundBody> found;
     std::uint32_t low = 0xffffffffu, high = 0;
     for (TriangleId t = object.first_triangle; t < object.first_triangle + object.triangle_count; ++t)
         for (int k = 0; k < 3; ++k) {
@@ -400,18 +404,14 @@ void find_in_object(const Scene& scene, const Object& object, Bodies& bodies) {
             high = std::max(high, scene.triangles[t][k]);
         }
     mesh.find(
-        high - low + 1, [&](std::uint32_t t) { return scene.triangles[object.first_triangle + t] - low; }, meshes,
-        found);
+        high - low + 1, [&](std::uint32_t t) { return scene.triangles[object.first_triangle + t] - low; }, found);
     mesh.find(
         static_cast<std::uint32_t>(mesh.topology().position.size()),
-        [&](std::uint32_t t) { return mesh.topology().triangles[t]; }, meshes, found);
-    std::vector<std::size_t> order(found.size());
-    for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-    std::ranges::sort(order, {}, [&](std::size_t k) { return found[k].holder; });
-    for (const std::size_t k : order) {
-        for (const TriangleId t : meshes[k].triangles())
-            bodies.of_mesh[t] = static_cast<std::uint32_t>(bodies.list.size());
-        bodies.list.push_back(found[k]);
+        [&](std::uint32_t t) { return mesh.topology().triangles[t]; }, found);
+    std::ranges::sort(found, {}, [](const FoundBody& f) { return f.body.holder; });
+    for (const auto& [body, triangles] : found) {
+        for (const TriangleId t : triangles) bodies.of_mesh[t] = static_cast<std::uint32_t>(bodies.list.size());
+        bodies.list.push_back(body);
     }
 }
 

@@ -220,9 +220,7 @@ struct BodyTree::Impl : EmbreeScene {
 
 BodyTree::BodyTree(std::vector<Body> bodies, std::vector<vec3> lets_through, std::vector<std::uint8_t> seen)
     : impl_(std::make_unique<Impl>(std::move(bodies), std::move(lets_through), std::move(seen))) {}
-BodyTree::~BodyTree()                              = default;
-BodyTree::BodyTree(BodyTree&&) noexcept            = default;
-BodyTree& BodyTree::operator=(BodyTree&&) noexcept = default;
+BodyTree::~BodyTree() = default;
 
 const Body& BodyTree::body(std::uint32_t b) const { return impl_->bodies[b]; }
 

@@ -44,10 +44,6 @@ public:
     /// 0 where the camera does not see it; empty: it sees all. Throws std::runtime_error where Embree fails.
     BodyTree(std::vector<Body> bodies, std::vector<vec3> lets_through, std::vector<std::uint8_t> seen = {});
     ~BodyTree();
-    BodyTree(BodyTree&&) noexcept;
-    BodyTree& operator=(BodyTree&&) noexcept;
-    BodyTree(const BodyTree&)            = delete;
-    BodyTree& operator=(const BodyTree&) = delete;
 
     [[nodiscard]] const Body& body(std::uint32_t b) const;
 

@@ -26,21 +26,21 @@ constexpr double kForever = static_cast<double>(kInfinity);
 // Before the light, a shadow ray ends by this part of its length: what touches the light does not hide it.
 constexpr double kBeforeTheLight = 1 - 1e-5;
 
-/// The scene's triangles that no body replaces: what a RayScene takes of a scene, and no more.
-Scene rest_of(const Scene& scene, const Bodies& bodies) {
+/// These triangles of the scene: what a RayScene takes of a scene, and no more.
+Scene rest_of(const Scene& scene, const std::vector<TriangleId>& kept_ones) {
     Scene rest;
     rest.positions   = scene.positions;
     rest.materials   = scene.materials;
     rest.objects     = scene.objects;
     rest.transparent = scene.transparent;
-    for (TriangleId t = 0; t < scene.triangles.size(); ++t) {
-        if (bodies.of_mesh[t] != kNoBody) continue;
+    for (const TriangleId t : kept_ones) {
         rest.triangles.push_back(scene.triangles[t]);
         rest.triangle_object.push_back(scene.triangle_object[t]);
     }
     return rest;
 }
 
+/// Triangles that no body replaces.
 std::vector<TriangleId> kept(const Scene& scene, const Bodies& bodies) {
     std::vector<TriangleId> numbers;
     for (TriangleId t = 0; t < scene.triangles.size(); ++t)
@@ -54,16 +54,14 @@ std::vector<TriangleId> numbered(const Scene& scene, const std::vector<TriangleI
     return numbers;
 }
 
-std::vector<vec3> surfaces_let_through(const Scene& scene, const Bodies& bodies) {
+BodyTree tree_of(const Scene& scene, const Bodies& bodies) {
     std::vector<vec3> passes;
-    for (const Body& body : bodies.list) passes.push_back(scene.lets_through(body.holder));
-    return passes;
-}
-
-std::vector<std::uint8_t> seen_bodies(const Scene& scene, const Bodies& bodies) {
     std::vector<std::uint8_t> seen;
-    for (const Body& body : bodies.list) seen.push_back(scene.switches(body.holder).seen_by_camera ? 1 : 0);
-    return seen;
+    for (const Body& body : bodies.list) {
+        passes.push_back(scene.lets_through(body.holder));
+        seen.push_back(scene.switches(body.holder).seen_by_camera ? 1 : 0);
+    }
+    return {bodies.list, std::move(passes), std::move(seen)};
 }
 
 /// Least and greatest height of a light over the plane through p with the unit normal n.
@@ -135,10 +133,10 @@ FormulaScene::FormulaScene(const Scene& scene, const Bodies& bodies)
     : scene_(&scene),
       in_scene_(kept(scene, bodies)),
       in_rest_(numbered(scene, in_scene_)),
-      rest_(rest_of(scene, bodies)),
-      shadow_rest_(rest_of(scene, bodies),
+      rest_(rest_of(scene, in_scene_)),
+      shadow_rest_(rest_of(scene, in_scene_),
                    scene.transparent == TransparentOccluders::multiply ? Met::all : Met::blocking),
-      bodies_(bodies.list, surfaces_let_through(scene, bodies), seen_bodies(scene, bodies)) {}
+      bodies_(tree_of(scene, bodies)) {}
 
 TriangleId FormulaScene::first_triangle(const RayScene& rays, Ray ray) const {
     if (ray.from != kNoTriangle) ray.from = in_rest_[ray.from];
