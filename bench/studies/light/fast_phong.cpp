@@ -12,10 +12,6 @@
 namespace umbra {
 namespace {
 
-/// One side of one triangle.
-using SideKey = std::pair<TriangleId, std::uint8_t>;
-SideKey side_of(const PointBatch& points, std::size_t i) { return {points.triangle[i], points.flipped[i]}; }
-
 /// Unit, or zero where there is no direction.
 dvec3 unit(dvec3 d) {
     const double length = glm::length(d);
@@ -27,12 +23,12 @@ class ShadedSide {
 public:
     ShadedSide(const Scene& scene, const PointBatch& points, const PhongSum& sum, std::size_t pixel)
         : scene_(&scene),
+          sum_(&sum),
+          eye_(&points),
           material_(&scene.material(points.triangle[pixel])),
           normals_(corner_normals(scene, points.triangle[pixel], dvec3(points.normal(pixel)))) {
         for (int k = 0; k < 3; ++k)
             corners_[static_cast<std::size_t>(k)] = dvec3(scene.vertex(points.triangle[pixel], k));
-        sum_ = &sum;
-        eye_ = &points;
     }
 
     [[nodiscard]] const Material& material() const { return *material_; }
@@ -56,10 +52,10 @@ private:
     }
 
     const Scene* scene_;
+    const PhongSum* sum_;
+    const PointBatch* eye_;
     const Material* material_;
     std::array<dvec3, 3> normals_, corners_{};
-    const PhongSum* sum_   = nullptr;
-    const PointBatch* eye_ = nullptr;
 };
 
 constexpr double kMiddle                                   = 1.0 / 3;

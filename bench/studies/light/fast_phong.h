@@ -9,12 +9,20 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "umbra/core/render/points.h"
 #include "umbra/core/render/sum.h"
 
 namespace umbra {
+
+/// One side of one triangle.
+using SideKey = std::pair<TriangleId, std::uint8_t>;
+/// The one that a pixel with a surface shows.
+[[nodiscard]] inline SideKey side_of(const PointBatch& points, std::size_t i) {
+    return {points.triangle[i], points.flipped[i]};
+}
 
 /// The angles of every light at every pixel with a surface, and what they took.
 struct PictureCosines {

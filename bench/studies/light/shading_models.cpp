@@ -32,10 +32,9 @@ struct Evaluations {
         const std::size_t at = next();
         const TriangleId t   = picture.triangle[pixel];
         set_point(points, at, scene, t, u, v);
-        const dvec3 normal = dvec3(picture.normal(pixel));
         points.flipped[at] = picture.flipped[pixel];
         points.nx[at] = picture.nx[pixel], points.ny[at] = picture.ny[pixel], points.nz[at] = picture.nz[pixel];
-        normals.push_back(normal);
+        normals.emplace_back(picture.normal(pixel));
         return at;
     }
 
@@ -59,44 +58,39 @@ private:
     std::size_t used_ = 0;
 };
 
-/// One side of one triangle.
-using SideKey = std::pair<TriangleId, std::uint8_t>;
+/// R G B: `light_at(i)` at each pixel with a surface, the scene's background elsewhere.
+template <class LightAt>
+Image painted(const Scene& scene, const PointBatch& points, const LightAt& light_at) {
+    Image linear(points.raster->width, points.raster->height, {"R", "G", "B"});
+    for (std::size_t i = 0; i < points.size(); ++i)
+        write_light(linear, i, points.triangle[i] == kNoTriangle ? dvec3(scene.background) : light_at(i));
+    return linear;
+}
 
 ShadedPicture constant(const Scene& scene, const PointBatch& points) {
-    ShadedPicture shaded{Image(points.raster->width, points.raster->height, {"R", "G", "B"})};
     const PhongSum sum(scene, *points.raster);
     std::map<SideKey, dvec3> values;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        dvec3 light = scene.background;
-        if (points.triangle[i] != kNoTriangle) {
-            const auto [entry, is_new] = values.try_emplace({points.triangle[i], points.flipped[i]});
-            if (is_new)
-                entry->second = sum.from_the_eye(points.triangle[i],
-                                                 -glm::dot(dvec3(points.normal(i)), dvec3(points.raster->forward)));
-            light = entry->second;
-        }
-        write_light(shaded.linear, i, light);
-    }
-    shaded.evaluations = values.size();
-    return shaded;
+    Image linear = painted(scene, points, [&](std::size_t i) {
+        const auto [entry, is_new] = values.try_emplace(side_of(points, i));
+        if (is_new)
+            entry->second =
+                sum.from_the_eye(points.triangle[i], -glm::dot(dvec3(points.normal(i)), dvec3(points.raster->forward)));
+        return entry->second;
+    });
+    return {std::move(linear), values.size()};
 }
 
 ShadedPicture flat(const Scene& scene, const PointBatch& points, const AskVisibility& ask) {
-    ShadedPicture shaded{Image(points.raster->width, points.raster->height, {"R", "G", "B"})};
     Evaluations evaluations(points);
     std::map<SideKey, std::size_t> centres;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (points.triangle[i] == kNoTriangle) continue;
-        const auto [entry, is_new] = centres.try_emplace({points.triangle[i], points.flipped[i]});
+        const auto [entry, is_new] = centres.try_emplace(side_of(points, i));
         if (is_new) entry->second = evaluations.add(scene, points, i, 1.0f / 3, 1.0f / 3);
     }
     const std::vector<dvec3> light = evaluations.sums(scene, *points.raster, ask);
-    for (std::size_t i = 0; i < points.size(); ++i)
-        write_light(shaded.linear, i,
-                    points.triangle[i] == kNoTriangle ? dvec3(scene.background)
-                                                      : light[centres.at({points.triangle[i], points.flipped[i]})]);
-    shaded.evaluations = evaluations.size();
-    return shaded;
+    return {painted(scene, points, [&](std::size_t i) { return light[centres.at(side_of(points, i))]; }),
+            evaluations.size()};
 }
 
 /// Weights of a triangle's corners that are linear in the picture, from those that are linear in space.
@@ -117,7 +111,6 @@ std::array<double, 3> in_the_picture(const Scene& scene, const PointBatch& point
 }
 
 ShadedPicture gouraud(const Scene& scene, const PointBatch& points, bool screen, const AskVisibility& ask) {
-    ShadedPicture shaded{Image(points.raster->width, points.raster->height, {"R", "G", "B"})};
     Evaluations evaluations(points);
     // Triangles that share a vertex and its normal share the value there; a vertex without a normal has one a face.
     std::map<SideKey, std::array<std::size_t, 3>> corners;
@@ -125,7 +118,7 @@ ShadedPicture gouraud(const Scene& scene, const PointBatch& points, bool screen,
     for (std::size_t i = 0; i < points.size(); ++i) {
         const TriangleId t = points.triangle[i];
         if (t == kNoTriangle) continue;
-        const auto [entry, is_new] = corners.try_emplace({t, points.flipped[i]});
+        const auto [entry, is_new] = corners.try_emplace(side_of(points, i));
         if (!is_new) continue;
         const auto normals = corner_normals(scene, t, dvec3(points.normal(i)));
         for (std::size_t k = 0; k < 3; ++k) {
@@ -143,26 +136,20 @@ ShadedPicture gouraud(const Scene& scene, const PointBatch& points, bool screen,
         }
     }
     const std::vector<dvec3> light = evaluations.sums(scene, *points.raster, ask);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        dvec3 value = scene.background;
-        if (points.triangle[i] != kNoTriangle) {
-            const double u = points.u[i], v = points.v[i];
-            std::array<double, 3> weights{1 - u - v, u, v};
-            if (screen) weights = in_the_picture(scene, points, i, weights);
-            const auto& at = corners.at({points.triangle[i], points.flipped[i]});
-            value          = weights[0] * light[at[0]] + weights[1] * light[at[1]] + weights[2] * light[at[2]];
-        }
-        write_light(shaded.linear, i, value);
-    }
-    shaded.evaluations = evaluations.size();
-    return shaded;
+    Image linear                   = painted(scene, points, [&](std::size_t i) {
+        const double u = points.u[i], v = points.v[i];
+        std::array<double, 3> weights{1 - u - v, u, v};
+        if (screen) weights = in_the_picture(scene, points, i, weights);
+        const auto& at = corners.at(side_of(points, i));
+        return weights[0] * light[at[0]] + weights[1] * light[at[1]] + weights[2] * light[at[2]];
+    });
+    return {std::move(linear), evaluations.size()};
 }
 
 /// `normal(i)` of each pixel; `evaluates(i)`: whether the sum is evaluated there, or the mean of its neighbours.
 template <class Normal, class Evaluates>
 ShadedPicture by_pixel(const Scene& scene, const PointBatch& points, const AskVisibility& ask, const Normal& normal,
                        const Evaluates& evaluates) {
-    ShadedPicture shaded{Image(points.raster->width, points.raster->height, {"R", "G", "B"})};
     Evaluations evaluations(points);
     std::vector<std::size_t> at(points.size(), 0);
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -171,52 +158,28 @@ ShadedPicture by_pixel(const Scene& scene, const PointBatch& points, const AskVi
         evaluations.normals.push_back(normal(i));
     }
     const std::vector<dvec3> light = evaluations.sums(scene, *points.raster, ask);
-    for (std::size_t i = 0; i < points.size(); ++i)
-        write_light(shaded.linear, i,
-                    points.triangle[i] == kNoTriangle ? dvec3(scene.background)
-                    : evaluates(i)                    ? light[at[i]]
-                                                      : 0.5 * (light[at[i - 1]] + light[at[i + 1]]));
-    shaded.evaluations = evaluations.size();
-    return shaded;
+    Image linear                   = painted(scene, points, [&](std::size_t i) {
+        return evaluates(i) ? light[at[i]] : 0.5 * (light[at[i - 1]] + light[at[i + 1]]);
+    });
+    return {std::move(linear), evaluations.size()};
 }
 
 /// Angles from elsewhere, S_j and the sum at each pixel. Lafortune's lobes need directions, and have the sum itself.
 ShadedPicture fast(const Scene& scene, const PointBatch& points, const PictureCosines& cosines,
                    const AskVisibility& ask) {
-    ShadedPicture shaded{Image(points.raster->width, points.raster->height, {"R", "G", "B"}), cosines.evaluations};
     const std::vector<VisibilityPlane> visibility = ask(points);
     const PhongSum sum(scene, *points.raster);
     std::vector<LightCosines> here(scene.lights.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        dvec3 light = scene.background;
-        if (points.triangle[i] != kNoTriangle && !scene.material(points.triangle[i]).lobes.empty()) {
-            light = sum.at(points, i, shading_normal(scene, points, i), visibility);
-        } else if (points.triangle[i] != kNoTriangle) {
-            for (LightId j = 0; j < here.size(); ++j) here[j] = cosines.at[j][i];
-            light = sum.with_cosines(points, i, here, visibility);
-        }
-        write_light(shaded.linear, i, light);
-    }
-    return shaded;
+    Image linear = painted(scene, points, [&](std::size_t i) {
+        if (!scene.material(points.triangle[i]).lobes.empty())
+            return sum.at(points, i, shading_normal(scene, points, i), visibility);
+        for (LightId j = 0; j < here.size(); ++j) here[j] = cosines.at[j][i];
+        return sum.with_cosines(points, i, here, visibility);
+    });
+    return {std::move(linear), cosines.evaluations};
 }
 
 }  // namespace
-
-std::string_view to_string(ShadingModel model) {
-    switch (model) {
-        case ShadingModel::constant: return "constant";
-        case ShadingModel::flat: return "flat";
-        case ShadingModel::gouraud: return "gouraud";
-        case ShadingModel::gouraud_screen: return "gouraud_screen";
-        case ShadingModel::every_second: return "every_second";
-        case ShadingModel::highlight_test: return "highlight_test";
-        case ShadingModel::taylor: return "taylor";
-        case ShadingModel::differences: return "differences";
-        case ShadingModel::phong: return "phong";
-        case ShadingModel::quadratic: return "quadratic";
-    }
-    return "";
-}
 
 dvec3 quadratic_normal(const std::array<dvec3, 3>& corners, const std::array<dvec3, 3>& normals, double u, double v) {
     const auto middle = [&](std::size_t i, std::size_t j) {

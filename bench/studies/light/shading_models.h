@@ -34,7 +34,12 @@ inline constexpr std::array kShadingModels{
     ShadingModel::constant,     ShadingModel::flat,           ShadingModel::gouraud, ShadingModel::gouraud_screen,
     ShadingModel::every_second, ShadingModel::highlight_test, ShadingModel::taylor,  ShadingModel::differences,
     ShadingModel::phong,        ShadingModel::quadratic};
-[[nodiscard]] std::string_view to_string(ShadingModel model);
+[[nodiscard]] constexpr std::string_view to_string(ShadingModel model) {
+    constexpr std::array<std::string_view, 10> names{"constant",     "flat",           "gouraud", "gouraud_screen",
+                                                     "every_second", "highlight_test", "taylor",  "differences",
+                                                     "phong",        "quadratic"};
+    return names[static_cast<std::size_t>(model)];
+}
 
 struct ShadedPicture {
     Image linear;                 ///< R G B, scene-linear

@@ -32,8 +32,7 @@ double worst_ratio(const ShadingModelRecord& model, std::span<const ShadingLimit
     double largest = 0;
     for (const ShadingLimit& limit : limits) {
         const double error = worst(model, limit.metric);
-        if (error > 0)
-            largest = std::max(largest, limit.most > 0 ? error / limit.most : std::numeric_limits<double>::infinity());
+        if (error > 0) largest = std::max(largest, limit.most > 0 ? error / limit.most : kInfinite);
     }
     return largest;
 }

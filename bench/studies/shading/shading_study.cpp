@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -23,6 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr auto kPhong = static_cast<std::size_t>(ShadingModel::phong);  ///< in the order of kShadingModels
+
 double luminance(const Image& linear, std::size_t i) {
     return 0.2126 * static_cast<double>(linear.at(i, 0)) + 0.7152 * static_cast<double>(linear.at(i, 1)) +
            0.0722 * static_cast<double>(linear.at(i, 2));
@@ -36,17 +37,22 @@ double highlight(const Image& linear, const PointBatch& points) {
     return largest;
 }
 
-/// Calls visit(i) for the middle of each three neighbours of a row that show one object.
-template <class Visit>
-void for_each_triple(const Scene& scene, const PointBatch& points, const Visit& visit) {
+/// The root mean square of value_at(i) over the middle i of each three neighbours of a row that show one object.
+template <class Value>
+double rms_of_triples(const Scene& scene, const PointBatch& points, const Value& value_at) {
     const auto width     = static_cast<std::size_t>(points.raster->width);
     const auto object_at = [&](std::size_t i) {
         return points.triangle[i] == kNoTriangle ? ~0u : scene.triangle_object[points.triangle[i]];
     };
+    double sum          = 0;
+    std::size_t triples = 0;
     for (std::size_t i = 1; i + 1 < points.size(); ++i) {
         if (i % width == 0 || (i + 1) % width == 0 || object_at(i) == ~0u) continue;
-        if (object_at(i - 1) == object_at(i) && object_at(i + 1) == object_at(i)) visit(i);
+        if (object_at(i - 1) != object_at(i) || object_at(i + 1) != object_at(i)) continue;
+        sum += std::pow(value_at(i), 2);
+        ++triples;
     }
+    return triples > 0 ? std::sqrt(sum / static_cast<double>(triples)) : 0;
 }
 
 /// The root mean square difference of what the eye takes two pictures for, which is more than the light where that
@@ -55,13 +61,8 @@ double perceived_difference(const PreparedScene& prepared, const Image& a, const
     const auto perceived = [](const Image& linear, std::size_t i) {
         return luminance(linear, i) + std::abs(luminance(linear, i + 1) - luminance(linear, i - 1)) / 2;
     };
-    double sum          = 0;
-    std::size_t triples = 0;
-    for_each_triple(prepared.scene, prepared.points, [&](std::size_t i) {
-        sum += std::pow(perceived(a, i) - perceived(b, i), 2);
-        ++triples;
-    });
-    return triples > 0 ? std::sqrt(sum / static_cast<double>(triples)) : 0;
+    return rms_of_triples(prepared.scene, prepared.points,
+                          [&](std::size_t i) { return perceived(a, i) - perceived(b, i); });
 }
 
 /// The root mean square of I(x - 1) - 2 I(x) + I(x + 1) of the luminance over triples of pixels that show one object,
@@ -73,13 +74,9 @@ double kink(ShadingModel model, const PreparedScene& prepared) {
     const Image linear       = shade_by(model, diffuse, points, [&](const PointBatch& asked) {
                              return lit_everywhere(diffuse, asked);
                          }).linear;
-    double sum               = 0;
-    std::size_t triples      = 0;
-    for_each_triple(diffuse, points, [&](std::size_t i) {
-        sum += std::pow(luminance(linear, i - 1) - 2 * luminance(linear, i) + luminance(linear, i + 1), 2);
-        ++triples;
+    return rms_of_triples(diffuse, points, [&](std::size_t i) {
+        return luminance(linear, i - 1) - 2 * luminance(linear, i) + luminance(linear, i + 1);
     });
-    return triples > 0 ? std::sqrt(sum / static_cast<double>(triples)) : 0;
 }
 
 double ratio(double a, double b) { return b > 0 ? a / b : a > 0 ? std::numeric_limits<double>::infinity() : 1; }
@@ -121,26 +118,20 @@ std::vector<Measured> measure(const PreparedScene& prepared, const ShadingOption
     return measured;
 }
 
-/// In the order of kShadingErrors.
-std::array<double, kShadingErrors.size()> errors(const PreparedScene& prepared, const Measured& phong,
-                                                 const Measured& here) {
+ShadingErrorsRecord errors(const PreparedScene& prepared, const Measured& phong, const Measured& here) {
     return {image_error(phong.shaded.linear, here.shaded.linear).rmse, flip_ldr(phong.shown, here.shown).mean,
             perceived_difference(prepared, phong.shaded.linear, here.shaded.linear)};
 }
 
-std::size_t index_of(ShadingModel model) {
-    return static_cast<std::size_t>(std::ranges::find(kShadingModels, model) - kShadingModels.begin());
-}
-
 /// The largest errors of each model over the views, of which the first is measured already.
-std::vector<std::array<double, kShadingErrors.size()>> worst_errors(const PreparedScene& prepared,
-                                                                    const std::vector<Measured>& measured,
-                                                                    const ShadingOptions& options) {
-    std::vector<std::array<double, kShadingErrors.size()>> worst(kShadingModels.size());
+std::vector<ShadingErrorsRecord> worst_errors(const PreparedScene& prepared, const std::vector<Measured>& measured,
+                                              const ShadingOptions& options) {
+    std::vector<ShadingErrorsRecord> worst(kShadingModels.size(), {0, 0, 0});
     const auto take = [&](const PreparedScene& view, const std::vector<Measured>& seen) {
         for (std::size_t k = 0; k < worst.size(); ++k) {
-            const auto found = errors(view, seen[index_of(ShadingModel::phong)], seen[k]);
-            for (std::size_t e = 0; e < found.size(); ++e) worst[k][e] = std::max(worst[k][e], found[e]);
+            const ShadingErrorsRecord found = errors(view, seen[kPhong], seen[k]);
+            worst[k]                        = {std::max(worst[k].rmse, found.rmse), std::max(worst[k].flip, found.flip),
+                                               std::max(worst[k].perceived, found.perceived)};
         }
     };
     take(prepared, measured);
@@ -159,7 +150,7 @@ std::vector<std::array<double, kShadingErrors.size()>> worst_errors(const Prepar
 ShadingRecord compare_shading(const PreparedScene& prepared, const ShadingOptions& options, const fs::path& folder) {
     AskedMethod shadows(prepared.scene, prepared.facts, options.method);
     const std::vector<Measured> measured = measure(prepared, options, shadows);
-    const Measured &phong = measured[index_of(ShadingModel::phong)], &again = measured.back();
+    const Measured &phong = measured[kPhong], &again = measured.back();
     const double brightest = highlight(phong.shaded.linear, prepared.points),
                  smooth    = kink(ShadingModel::phong, prepared);
     const auto worst       = worst_errors(prepared, measured, options);
@@ -174,17 +165,17 @@ ShadingRecord compare_shading(const PreparedScene& prepared, const ShadingOption
         const std::string name(to_string(model)), picture = name + ".png", difference = name + "_difference.png";
         write_image(folder / picture, here.shown);
         write_image(folder / difference, difference_of(here.shown, phong.shown));
-        const Image& linear = here.shaded.linear;
-        const auto found    = errors(prepared, phong, here);
+        const Image& linear             = here.shaded.linear;
+        const ShadingErrorsRecord found = errors(prepared, phong, here);
         record.models.push_back({.name        = name,
                                  .evaluations = here.shaded.evaluations,
                                  .asked       = here.asked,
                                  .ms          = median(here.times_ms),
                                  .times_ms    = here.times_ms,
-                                 .rmse        = found[0],
-                                 .worst       = {worst[k][0], worst[k][1], worst[k][2]},
-                                 .flip        = found[1],
-                                 .perceived   = found[2],
+                                 .rmse        = found.rmse,
+                                 .worst       = worst[k],
+                                 .flip        = found.flip,
+                                 .perceived   = found.perceived,
                                  .highlight   = ratio(highlight(linear, prepared.points), brightest),
                                  .kink        = ratio(kink(model, prepared), smooth),
                                  .picture     = picture,
