@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -38,7 +39,8 @@ constexpr std::array<std::string_view, 4> kWayNames{"raster", "eye_rays", "every
 struct Traced {
     RayTree tree;
     TreeLight light;
-    Image linear;  ///< of pixels
+    Image linear;   ///< of pixels
+    Image shown{};  ///< the same to be displayed, of the picture alone that others are compared with
     double eye_ms = 0, gather_ms = 0;
 
     [[nodiscard]] double ms() const {
@@ -56,13 +58,16 @@ struct Study {
     const PreparedScene& prepared;
     const WhittedOptions& options;
     const RayScene& rays;
-    int side;
+    AskedMethod& shadows;
+    const fs::path& folder;  ///< of all pictures
+    TreeOptions tree;
+    CameraFrame fine;  ///< of the eye rays, tree.side x tree.side a pixel
 
     [[nodiscard]] const Scene& scene() const { return prepared.scene; }
     [[nodiscard]] int width() const { return prepared.points.raster->width; }
     [[nodiscard]] int height() const { return prepared.points.raster->height; }
     [[nodiscard]] Image picture(const Traced& traced, int depth) const {
-        return box_filtered(gather(scene(), traced.tree, traced.light, depth), side);
+        return box_filtered(gather(scene(), traced.tree, traced.light, depth), tree.side);
     }
     [[nodiscard]] Image shown(const Image& linear) const { return displayed(linear, scene().tone, scene().exposure); }
     void say(const std::string& what) const {
@@ -70,45 +75,54 @@ struct Study {
     }
 };
 
-PointBatch eye_points(const Study& study, bool one_by_one) {
-    const int width = study.width(), height = study.height();
-    const EyePlaces places = study.options.places;
-    if (!one_by_one && places == EyePlaces::regular)
-        return subpixel_points(study.rays, study.scene(), width, height, study.side);
-    return trace_eye_rays(study.rays, study.scene(),
-                          frame(study.scene().camera, width * study.side, height * study.side), places, study.side);
+/// Writes a picture of pixels and compares it with the whole one.
+WhittedOtherRecord write_other(const Study& study, const Traced& whole, const Image& linear, const std::string& file) {
+    const Image shown = study.shown(linear);
+    write_image(study.folder / file, shown);
+    return {.rmse = image_error(whole.linear, linear).rmse, .flip = flip_ldr(whole.shown, shown).mean, .picture = file};
 }
 
-Traced trace_once(const Study& study, Way way, AskedMethod& shadows, Transparency transparency = Transparency::blend) {
-    const TreeOptions options{.depth        = study.options.depth,
-                              .least_weight = way == Way::any_weight ? 0 : study.options.least_weight,
-                              .everywhere   = way == Way::everywhere,
-                              .transparency = transparency,
-                              .glossy       = study.options.glossy,
-                              .eye_places   = study.options.places,
-                              .side         = study.side};
+PointBatch eye_points(const Study& study, bool one_by_one) {
+    const TreeOptions& tree = study.tree;
+    if (!one_by_one && tree.eye_places == EyePlaces::regular)
+        return subpixel_points(study.rays, study.scene(), study.width(), study.height(), tree.side);
+    return trace_eye_rays(study.rays, study.scene(), study.fine, tree.eye_places, tree.side);
+}
+
+/// Finds light and picture of a tree whose S_j, [level][light], `ask()` returns.
+template <class Ask>
+void add_light(const Study& study, Traced& traced, const Ask& ask) {
+    std::vector<std::vector<VisibilityPlane>> visibility;
+    const double shadow_ms = timed_ms([&] { visibility = ask(); });
+    traced.light           = light_of_rays(study.scene(), traced.tree, visibility);
+    traced.light.shadow_ms = shadow_ms;
+    traced.gather_ms       = timed_ms([&] { traced.linear = study.picture(traced, study.tree.depth); });
+}
+
+Traced trace_once(const Study& study, Way way, Transparency transparency = Transparency::blend) {
+    TreeOptions options  = study.tree;
+    options.everywhere   = way == Way::everywhere;
+    options.transparency = transparency;
+    if (way == Way::any_weight) options.least_weight = 0;
     Traced traced;
     PointBatch eye;
     traced.eye_ms = timed_ms([&] { eye = eye_points(study, way == Way::eye_rays || way == Way::everywhere); });
     traced.tree   = trace_rays(study.rays, study.scene(), std::move(eye), options);
-    std::vector<std::vector<VisibilityPlane>> visibility;
-    const double shadow_ms = timed_ms([&] {
+    add_light(study, traced, [&] {
         std::vector<const PointBatch*> batches;
         for (const RayLevel& level : traced.tree.levels) batches.push_back(&level.points);
-        visibility = shadows.of(batches);
+        return study.shadows.of(batches);
     });
-    traced.light           = light_of_rays(study.scene(), traced.tree, visibility);
-    traced.light.shadow_ms = shadow_ms;
-    traced.gather_ms       = timed_ms([&] { traced.linear = study.picture(traced, study.options.depth); });
     return traced;
 }
 
 /// The fastest of some runs; all make the same picture.
-Traced trace(const Study& study, Way way, AskedMethod& shadows) {
-    Traced fastest = trace_once(study, way, shadows);
-    for (int run = 1; run < study.options.runs; ++run)
-        if (Traced again = trace_once(study, way, shadows); again.ms() < fastest.ms()) fastest = std::move(again);
-    return fastest;
+template <class Trace>
+Traced fastest(int runs, const Trace& trace) {
+    Traced best = trace();
+    for (int run = 1; run < runs; ++run)
+        if (Traced again = trace(); again.ms() < best.ms()) best = std::move(again);
+    return best;
 }
 
 WhittedDepthRecord counts_record(std::size_t level, const RayCounts& counts) {
@@ -136,20 +150,14 @@ Members<std::uint64_t> totals(const RayTree& tree) {
             {"met", all.met}, {"shadow", all.shadow},       {"total_reflections", all.total}};
 }
 
-std::vector<WhittedDepthRecord> depth_records(const Study& study, const Traced& traced, const fs::path& folder) {
+std::vector<WhittedDepthRecord> depth_records(const Study& study, const Traced& whole) {
     std::vector<WhittedDepthRecord> depths;
-    const Image& whole = traced.linear;
-    const Image shown  = study.shown(whole);
-    for (std::size_t level = 0; level < traced.tree.levels.size(); ++level) {
-        const int depth        = static_cast<int>(level) + 1;
-        const Image linear     = study.picture(traced, depth);
-        const Image picture    = study.shown(linear);
-        const std::string file = fmt::format("depth_{}.png", depth);
-        write_image(folder / file, picture);
-        WhittedDepthRecord& record = depths.emplace_back(counts_record(level, traced.tree.levels[level].counts));
-        record.rmse                = image_error(whole, linear).rmse;
-        record.flip                = flip_ldr(shown, picture).mean;
-        record.picture             = file;
+    for (std::size_t level = 0; level < whole.tree.levels.size(); ++level) {
+        const int depth = static_cast<int>(level) + 1;
+        const WhittedOtherRecord other =
+            write_other(study, whole, study.picture(whole, depth), fmt::format("depth_{}.png", depth));
+        WhittedDepthRecord& record = depths.emplace_back(counts_record(level, whole.tree.levels[level].counts));
+        record.rmse = other.rmse, record.flip = other.flip, record.picture = other.picture;
     }
     return depths;
 }
@@ -188,6 +196,13 @@ bool same_place(const Scene& scene, const Ray& ray, TriangleId one, TriangleId o
            1e-6 * static_cast<double>(bounds(scene).diagonal());
 }
 
+std::uint64_t different_places(const Scene& scene, const std::vector<Ray>& rays, const std::vector<TriangleId>& one,
+                               const std::vector<TriangleId>& other) {
+    std::uint64_t different = 0;
+    for (std::size_t k = 0; k < rays.size(); ++k) different += same_place(scene, rays[k], one[k], other[k]) ? 0 : 1;
+    return different;
+}
+
 /// The same rays in the ways that the lecture names, against what the search of every triangle found.
 std::vector<WhittedSearchWayRecord> search_way_records(const Study& study, const std::vector<Ray>& sample,
                                                        const std::vector<TriangleId>& by_search) {
@@ -201,18 +216,15 @@ std::vector<WhittedSearchWayRecord> search_way_records(const Study& study, const
         const double build_ms = timed_ms([&] { search.emplace(way, scene); });
         SearchSteps steps;
         std::vector<TriangleId> met(sample.size());
-        const double ms       = timed_ms([&] {
+        const double ms = timed_ms([&] {
             for (std::size_t k = 0; k < sample.size(); ++k) met[k] = search->first(sample[k], starts[k], steps);
         });
-        std::size_t different = 0;
-        for (std::size_t k = 0; k < sample.size(); ++k)
-            different += same_place(scene, sample[k], met[k], by_search[k]) ? 0 : 1;
         ways.push_back({.name      = std::string(to_string(way)),
                         .build_ms  = build_ms,
                         .us        = 1000 * ms / rays,
                         .volumes   = static_cast<double>(steps.volumes) / rays,
                         .triangles = static_cast<double>(steps.triangles) / rays,
-                        .different = different});
+                        .different = different_places(scene, sample, met, by_search)});
     }
     return ways;
 }
@@ -244,10 +256,7 @@ std::optional<WhittedSearchRecord> search_record(const Study& study, const RayTr
                      for (std::size_t k = 0; k < sample.size(); ++k)
                          by_search[k] = first_by_search(study.rays, study.scene(), sample[k]);
                  });
-    std::size_t different  = 0;
-    for (std::size_t k = 0; k < sample.size(); ++k)
-        different += same_place(study.scene(), sample[k], by_tree[k], by_search[k]) ? 0 : 1;
-    const auto rays = static_cast<double>(sample.size());
+    const auto rays        = static_cast<double>(sample.size());
     return WhittedSearchRecord{.triangles        = triangles,
                                .rays             = sample.size(),
                                .of               = all,
@@ -255,17 +264,17 @@ std::optional<WhittedSearchRecord> search_record(const Study& study, const RayTr
                                .search_us        = 1000 * search_ms / rays,
                                .ratio            = search_ms / tree_ms,
                                .all_by_search_ms = search_ms / rays * static_cast<double>(all),
-                               .different        = different,
+                               .different        = different_places(study.scene(), sample, by_tree, by_search),
                                .ways             = search_way_records(study, sample, by_search)};
 }
 
 /// Rays a pixel, black 1, white the most.
 Image ray_picture(const Study& study, const RayTree& tree, double& most) {
     const std::vector<std::uint32_t> rays = rays_by_eye_ray(tree);
-    Image fine(study.width() * study.side, study.height() * study.side, {"R", "G", "B"});
+    Image fine(study.fine.width, study.fine.height, {"R", "G", "B"});
     for (std::size_t i = 0; i < rays.size(); ++i)
         for (std::size_t c = 0; c < 3; ++c) fine.at(i, c) = static_cast<float>(rays[i]);
-    Image image       = box_filtered(fine, study.side);
+    Image image       = box_filtered(fine, study.tree.side);
     most              = static_cast<double>(*std::ranges::max_element(image.data));
     const float range = static_cast<float>(std::max(most - 1, 1.0));
     for (float& value : image.data) value = srgb_from_linear(std::clamp((value - 1) / range, 0.0f, 1.0f));
@@ -275,12 +284,11 @@ Image ray_picture(const Study& study, const RayTree& tree, double& most) {
 bool is_diffuse(const Material& material) { return material.k_d * material.O_d != vec3(0); }
 
 /// Pixel centres that lights reach over plane mirrors, orange where S_j of such a light is 0, in a dim picture.
-std::optional<WhittedBlindRecord> blind_record(const Study& study, AskedMethod& shadows, const Image& shown,
-                                               const fs::path& folder) {
+std::optional<WhittedBlindRecord> blind_record(const Study& study, const Image& shown) {
     const PointBatch& points              = study.prepared.points;
     const std::vector<MirrorPlane> planes = mirror_planes(study.scene());
     if (planes.empty()) return {};
-    const std::vector<VisibilityPlane> straight = shadows(points);
+    const std::vector<VisibilityPlane> straight = study.shadows(points);
     std::vector<std::uint8_t> reached(points.size(), 0), dark(points.size(), 0);
     for (LightId j = 0; j < study.scene().lights.size(); ++j) {
         const std::vector<std::uint8_t> lit = lit_by_mirrors(study.rays, study.scene(), points, j, planes);
@@ -298,7 +306,7 @@ std::optional<WhittedBlindRecord> blind_record(const Study& study, AskedMethod& 
             value        = 0.4f * value + (reached[i] != 0 ? 0.6f * (dark[i] != 0 ? orange : pale)[c] : 0.0f);
         }
     }
-    write_image(folder / "blind.png", map);
+    write_image(study.folder / "blind.png", map);
     const auto marked = [](const std::vector<std::uint8_t>& marks) {
         return static_cast<std::uint64_t>(std::ranges::count(marks, std::uint8_t{1}));
     };
@@ -306,53 +314,46 @@ std::optional<WhittedBlindRecord> blind_record(const Study& study, AskedMethod& 
 }
 
 /// Null where the eye sees through no surface.
-std::optional<WhittedOtherRecord> screen_door_record(const Study& study, const Traced& blended, AskedMethod& shadows,
-                                                     const Image& shown, const fs::path& folder) {
+std::optional<WhittedOtherRecord> screen_door_record(const Study& study, const Traced& blended) {
     if (std::ranges::all_of(blended.tree.levels, [](const RayLevel& level) { return level.own.empty(); })) return {};
-    const Traced traced = trace_once(study, Way::raster, shadows, Transparency::screen_door);
-    const Image picture = study.shown(traced.linear);
-    write_image(folder / "screen_door.png", picture);
-    return WhittedOtherRecord{image_error(blended.linear, traced.linear).rmse, flip_ldr(shown, picture).mean,
-                              traced.rays(), traced.ms(), "screen_door.png"};
+    const Traced traced       = trace_once(study, Way::raster, Transparency::screen_door);
+    WhittedOtherRecord record = write_other(study, blended, traced.linear, "screen_door.png");
+    record.rays = traced.rays(), record.ms = traced.ms();
+    return record;
 }
 
 /// The picture of one eye ray a pixel, of those that the whole has. Null where it has no more.
-std::optional<WhittedOtherRecord> single_record(const Study& study, const Traced& traced, const Image& shown,
-                                                const fs::path& folder) {
-    if (study.side == 1) return {};
-    const Image fine = gather(study.scene(), traced.tree, traced.light, study.options.depth);
+std::optional<WhittedOtherRecord> single_record(const Study& study, const Traced& traced) {
+    if (study.tree.side == 1) return {};
+    const Image fine = gather(study.scene(), traced.tree, traced.light, study.tree.depth);
     Image linear(study.width(), study.height(), fine.channels);
-    const auto side = static_cast<std::size_t>(study.side), width = static_cast<std::size_t>(study.width());
+    const auto side = static_cast<std::size_t>(study.tree.side), width = static_cast<std::size_t>(study.width());
     for (std::size_t i = 0; i < traced.linear.data.size() / 3; ++i) {
         const std::size_t x = i % width * side + side / 2, y = i / width * side + side / 2;
         for (std::size_t c = 0; c < 3; ++c) linear.at(i, c) = fine.at(y * width * side + x, c);
     }
-    const Image picture = study.shown(linear);
-    write_image(folder / "single.png", picture);
-    return WhittedOtherRecord{.rmse    = image_error(traced.linear, linear).rmse,
-                              .flip    = flip_ldr(shown, picture).mean,
-                              .picture = "single.png"};
+    return write_other(study, traced, linear, "single.png");
 }
 
 /// The picture of eye rays that look from `camera`; the scene is the study's.
-Traced trace_from(const Study& study, const Camera& camera, AskedMethod& shadows) {
-    Scene moved  = study.scene();
-    moved.camera = camera;
+Traced trace_from(const Study& study, const Camera& camera) {
+    Scene moved         = study.scene();
+    moved.camera        = camera;
+    TreeOptions options = study.tree;
+    options.glossy      = false;
     Traced traced;
-    traced.tree =
-        trace_rays(study.rays, moved, subpixel_points(study.rays, moved, study.width(), study.height(), study.side),
-                   {.depth = study.options.depth, .least_weight = study.options.least_weight, .side = study.side});
-    traced.light = light_of_rays(moved, traced.tree, [&](const PointBatch& points) { return shadows(points); });
+    traced.tree  = trace_rays(study.rays, moved,
+                              subpixel_points(study.rays, moved, study.width(), study.height(), options.side), options);
+    traced.light = light_of_rays(moved, traced.tree, std::ref(study.shadows));
     return traced;
 }
 
 /// Where mirror images are kept as textures of their surfaces while the eye moves: each point of a mirror shows what it
 /// mirrored to the eye before. Sideways, by parts of the distance to the target. Null without mirrored rays.
-std::optional<std::vector<WhittedKeptRecord>> kept_records(const Study& study, const Traced& before,
-                                                           AskedMethod& shadows, const fs::path& folder) {
-    if (before.tree.levels.size() < 2 || study.options.places != EyePlaces::regular) return {};
+std::optional<std::vector<WhittedKeptRecord>> kept_records(const Study& study, const Traced& before) {
+    if (before.tree.levels.size() < 2 || study.tree.eye_places != EyePlaces::regular) return {};
     const auto mirrored_in = [&](const Traced& traced) {
-        Image all          = gather(study.scene(), traced.tree, traced.light, study.options.depth);
+        Image all          = gather(study.scene(), traced.tree, traced.light, study.tree.depth);
         const Image direct = gather(study.scene(), traced.tree, traced.light, 1);
         for (std::size_t k = 0; k < all.data.size(); ++k) all.data[k] -= direct.data[k];
         return all;
@@ -369,9 +370,9 @@ std::optional<std::vector<WhittedKeptRecord>> kept_records(const Study& study, c
     for (const double part : {0.0, 0.01, 0.03, 0.1}) {
         Camera moved             = camera;
         moved.eye                = vec3(dvec3(camera.eye) + part * way);
-        const Traced now         = trace_from(study, moved, shadows);
+        const Traced now         = trace_from(study, moved);
         const PointBatch& points = now.tree.levels[0].points;
-        const Image truth        = gather(study.scene(), now.tree, now.light, study.options.depth);
+        const Image truth        = gather(study.scene(), now.tree, now.light, study.tree.depth);
         const Image now_mirrored = mirrored_in(now);
         Image shown              = truth;
         std::uint64_t of = 0, known = 0;
@@ -392,14 +393,14 @@ std::optional<std::vector<WhittedKeptRecord>> kept_records(const Study& study, c
             }
         }
         const std::string file = fmt::format("kept_{}.png", moves.size());
-        write_image(folder / file, study.shown(box_filtered(shown, study.side)));
+        write_image(study.folder / file, study.shown(box_filtered(shown, study.tree.side)));
         moves.push_back({.part    = part,
                          .mirrors = of,
                          .kept    = of > 0 ? static_cast<double>(known) / static_cast<double>(of) : 0,
                          .rmse    = known > 0 ? std::sqrt(squares / static_cast<double>(known)) : 0,
                          .picture = file});
         if (moves.size() == 4) {
-            write_image(folder / "moved.png", study.shown(box_filtered(truth, study.side)));
+            write_image(study.folder / "moved.png", study.shown(box_filtered(truth, study.tree.side)));
             moves.back().truth = "moved.png";
         }
     }
@@ -408,41 +409,28 @@ std::optional<std::vector<WhittedKeptRecord>> kept_records(const Study& study, c
 
 /// The picture in which rays meet bodies by formula.
 Traced trace_formula(const Study& study, const FormulaScene& bodies) {
-    const TreeOptions options{.depth        = study.options.depth,
-                              .least_weight = study.options.least_weight,
-                              .glossy       = study.options.glossy,
-                              .eye_places   = study.options.places,
-                              .side         = study.side};
-    const CameraFrame raster = frame(study.scene().camera, study.width() * study.side, study.height() * study.side);
     Traced traced;
-    traced.tree = bodies.trace(raster, options);
-    std::vector<std::vector<VisibilityPlane>> visibility;
-    const double shadow_ms = timed_ms([&] {
+    traced.tree = bodies.trace(study.fine, study.tree);
+    add_light(study, traced, [&] {
+        std::vector<std::vector<VisibilityPlane>> visibility;
         for (std::size_t level = 0; level < traced.tree.levels.size(); ++level)
             visibility.push_back(study.options.method
                                      ? bodies.visibility(traced.tree, level)
                                      : lit_everywhere(study.scene(), traced.tree.levels[level].points));
+        return visibility;
     });
-    traced.light           = light_of_rays(study.scene(), traced.tree, visibility);
-    traced.light.shadow_ms = shadow_ms;
-    traced.gather_ms       = timed_ms([&] { traced.linear = study.picture(traced, study.options.depth); });
     return traced;
 }
 
 /// Null without bodies.
-std::optional<WhittedFormulaRecord> formula_record(const Study& study, const Traced& triangles, const Image& shown,
-                                                   const fs::path& folder) {
+std::optional<WhittedFormulaRecord> formula_record(const Study& study, const Traced& triangles) {
     if (!study.options.bodies) return {};
     const Bodies& bodies = *study.options.bodies;
     std::optional<FormulaScene> scene;
-    const double build_ms = timed_ms([&] { scene.emplace(study.scene(), bodies); });
-    Traced traced         = trace_formula(study, *scene);
-    for (int run = 1; run < study.options.runs; ++run)
-        if (Traced again = trace_formula(study, *scene); again.ms() < traced.ms()) traced = std::move(again);
-    const Image picture = study.shown(traced.linear);
-    write_image(folder / "formula.png", picture);
-    const ImageError error = image_error(triangles.linear, traced.linear);
-    const bool sampled     = study.options.method && std::ranges::any_of(study.scene().lights, is_area, &Light::kind);
+    const double build_ms          = timed_ms([&] { scene.emplace(study.scene(), bodies); });
+    const Traced traced            = fastest(study.options.runs, [&] { return trace_formula(study, *scene); });
+    const WhittedOtherRecord other = write_other(study, triangles, traced.linear, "formula.png");
+    const bool sampled = study.options.method && std::ranges::any_of(study.scene().lights, is_area, &Light::kind);
     WhittedFormulaRecord record{.bodies              = {{"spheres", bodies.count(BodyKind::sphere)},
                                                         {"boxes", bodies.count(BodyKind::box)},
                                                         {"cylinders", bodies.count(BodyKind::cylinder)},
@@ -455,10 +443,10 @@ std::optional<WhittedFormulaRecord> formula_record(const Study& study, const Tra
                                 .rays                = traced.rays(),
                                 .build_ms            = build_ms,
                                 .ms                  = traced.ms(),
-                                .rmse                = error.rmse,
-                                .max_difference      = error.max,
-                                .flip                = flip_ldr(shown, picture).mean,
-                                .picture             = "formula.png"};
+                                .rmse                = other.rmse,
+                                .max_difference      = image_error(triangles.linear, traced.linear).max,
+                                .flip                = other.flip,
+                                .picture             = other.picture};
     if (sampled) record.light_samples = kFormulaLightSamples;
     for (std::size_t level = 0; level < traced.tree.levels.size(); ++level)
         record.depths.push_back(counts_record(level, traced.tree.levels[level].counts));
@@ -481,27 +469,33 @@ std::string refusal_of(const MethodInfo& method) {
 }
 
 WhittedRecord trace_whitted(const PreparedScene& prepared, const WhittedOptions& options, const fs::path& folder) {
-    const int side = samples_along_side(options.pixel_samples);
-    check_memory(prepared.scene, prepared.scene.source, prepared.points.raster->width, prepared.points.raster->height,
-                 options.pixel_samples, Work::picture);
-    double rays_ms = 0, method_ms = 0;
+    const int side  = samples_along_side(options.pixel_samples);
+    const int width = prepared.points.raster->width, height = prepared.points.raster->height;
+    check_memory(prepared.scene, prepared.scene.source, width, height, options.pixel_samples, Work::picture);
     std::optional<RayScene> rays;
-    rays_ms = timed_ms([&] { rays.emplace(prepared.scene); });
+    const double rays_ms = timed_ms([&] { rays.emplace(prepared.scene); });
     std::optional<AskedMethod> shadows;
-    method_ms = timed_ms([&] { shadows.emplace(prepared.scene, prepared.facts, options.method); });
-    const Study study{prepared, options, *rays, side};
+    const double method_ms = timed_ms([&] { shadows.emplace(prepared.scene, prepared.facts, options.method); });
+    const TreeOptions tree{.depth        = options.depth,
+                           .least_weight = options.least_weight,
+                           .glossy       = options.glossy,
+                           .eye_places   = options.places,
+                           .side         = side};
+    const Study study{
+        prepared, options, *rays, *shadows, folder, tree, frame(prepared.scene.camera, width * side, height * side)};
+    const auto trace = [&](Way way) { return fastest(options.runs, [&] { return trace_once(study, way); }); };
 
     study.say("tracing");
-    const Traced raster = trace(study, Way::raster, *shadows);
-    const Image shown   = study.shown(raster.linear);
-    write_image(folder / "whitted.png", shown);
+    Traced raster = trace(Way::raster);
+    raster.shown  = study.shown(raster.linear);
+    write_image(folder / "whitted.png", raster.shown);
     double most_rays = 0;
     write_image(folder / "rays.png", ray_picture(study, raster.tree, most_rays));
 
     std::vector<WhittedWayRecord> ways;
     for (const Way way : kWays) {
         study.say(fmt::format("tracing: {}", kWayNames[static_cast<std::size_t>(way)]));
-        ways.push_back(way_record(way, way == Way::raster ? raster : trace(study, way, *shadows), raster));
+        ways.push_back(way_record(way, way == Way::raster ? raster : trace(way), raster));
     }
     WhittedRecord record{.head              = head_record(options.command),
                          .scene             = scene_record(prepared.scene),
@@ -514,7 +508,7 @@ WhittedRecord trace_whitted(const PreparedScene& prepared, const WhittedOptions&
                          .rays_picture      = "rays.png",
                          .most_rays_a_pixel = most_rays,
                          .undefined         = raster.light.undefined,
-                         .depths            = depth_records(study, raster, folder),
+                         .depths            = depth_records(study, raster),
                          .build_ms          = {rays_ms, method_ms},
                          .total_ms          = raster.ms(),
                          .phases            = phase_records(raster),
@@ -522,13 +516,13 @@ WhittedRecord trace_whitted(const PreparedScene& prepared, const WhittedOptions&
     if (options.method) record.method = options.method->text();
     study.say("testing every triangle");
     record.search      = search_record(study, raster.tree);
-    record.blind       = blind_record(study, *shadows, shown, folder);
-    record.screen_door = screen_door_record(study, raster, *shadows, shown, folder);
-    record.single      = single_record(study, raster, shown, folder);
+    record.blind       = blind_record(study, raster.shown);
+    record.screen_door = screen_door_record(study, raster);
+    record.single      = single_record(study, raster);
     study.say("moving the eye");
-    record.kept = kept_records(study, raster, *shadows, folder);
+    record.kept = kept_records(study, raster);
     if (options.bodies) study.say("tracing: formula");
-    record.formula = formula_record(study, raster, shown, folder);
+    record.formula = formula_record(study, raster);
     return record;
 }
 
