@@ -214,21 +214,13 @@ private:
         });
     }
 
-    /// The eight positions; nothing where there are more or fewer.
-    [[nodiscard]] std::optional<std::array<dvec3, 8>> corners_of_box() const {
-        std::array<dvec3, 8> corners{};
-        std::size_t count = 0;
-        bool more         = false;
+    /// Each position once.
+    [[nodiscard]] std::vector<dvec3> positions() const {
+        std::vector<dvec3> once;
         each_corner([&](TriangleId t, int k) {
-            const auto end = corners.begin() + static_cast<std::ptrdiff_t>(count);
-            if (std::find(corners.begin(), end, corner(t, k)) != end) return;
-            if (count < 8)
-                corners[count++] = corner(t, k);
-            else
-                more = true;
+            if (std::find(once.begin(), once.end(), corner(t, k)) == once.end()) once.push_back(corner(t, k));
         });
-        if (more || count < 8) return std::nullopt;
-        return corners;
+        return once;
     }
 
     /// Two faces' normals and their cross product: near to the axes of a box.
@@ -249,28 +241,28 @@ private:
     }
 
     [[nodiscard]] std::optional<Body> as_box() const {
-        const auto corners = corners_of_box();
-        const auto normals = corners ? normals_of_box() : std::nullopt;
+        const std::vector<dvec3> corners = positions();
+        const auto normals               = corners.size() == 8 ? normals_of_box() : std::nullopt;
         if (!normals) return std::nullopt;
         dvec3 centre(0);
-        for (const dvec3& p : *corners) centre += p / 8.0;
+        for (const dvec3& p : corners) centre += p / 8.0;
         Body box = body(BodyKind::box, centre, volume(centre) < 0);
         box.axes = *normals;
         // Axes and sizes are means of the four edges each, so that they are closer than one edge's rounding.
         unsigned ends = 0;
         dmat3 edges(0);
-        for (const dvec3& p : *corners) {
+        for (const dvec3& p : corners) {
             const unsigned end = end_of(box, p);
             ends |= 1u << end;
             for (unsigned k = 0; k < 3; ++k) edges[static_cast<int>(k)] += (end >> k & 1u ? 0.125 : -0.125) * p;
         }
         if (ends != 0xffu) return std::nullopt;
         for (int k = 0; k < 3; ++k) box.half_size[k] = glm::length(edges[k]), box.axes[k] = glm::normalize(edges[k]);
-        if (!fits_box(box, *corners)) return std::nullopt;
+        if (!fits_box(box, corners)) return std::nullopt;
         return box;
     }
 
-    [[nodiscard]] bool fits_box(const Body& box, const std::array<dvec3, 8>& corners) const {
+    [[nodiscard]] bool fits_box(const Body& box, const std::vector<dvec3>& corners) const {
         const double allowed = rounding(glm::length(box.half_size), farthest_coordinate());
         for (int k = 0; k < 3; ++k)
             if (!(box.half_size[k] > 10 * allowed)) return false;

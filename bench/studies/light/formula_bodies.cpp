@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
-/// a t^2 + 2 b t + c <= 0. Up to two passages: where a < 0, before the first root and after the second.
+/// a t^2 + 2 b t + c <= 0. Up to two passages: where a < 0, before the first root and after the second. The root of
+/// larger magnitude is computed first and gives the other.
 Passages below_zero(double a, double b, double c) {
     if (a == 0) {
         if (b == 0) return c <= 0 ? Passages{{{{-kEndless, kEndless}}}, 1} : Passages{};
@@ -24,8 +25,8 @@ Passages below_zero(double a, double b, double c) {
     return {{{{-kEndless, near}, {far, kEndless}}}, 2};
 }
 
-/// Of those passages the part where |z| <= half; of two the longer one: of a double cone's halves one lies in the slab, and
-/// the other touches it at most.
+/// The part of those passages where |z| <= half; of two the longer one: of a double cone's halves one lies in the slab,
+/// and the other touches it at most.
 std::optional<Passage> within_slab(const Passages& passages, double origin, double direction, double half) {
     Passage slab{-kEndless, kEndless};
     if (direction != 0)
@@ -85,16 +86,10 @@ SignChanges sign_changes(const AlongLine& p, double low, double high) {
 }  // namespace
 
 std::optional<Passage> through_sphere(dvec3 origin, dvec3 direction, dvec3 centre, double radius) {
-    // a t^2 + 2 b t + c = 0
     const dvec3 from = origin - centre;
-    const double a = glm::dot(direction, direction), b = glm::dot(from, direction);
-    const double c            = glm::dot(from, from) - radius * radius;
-    const double discriminant = b * b - a * c;
-    if (discriminant < 0) return std::nullopt;
-    const double q = -(b + std::copysign(std::sqrt(discriminant), b));
-    if (q == 0) return Passage{0, 0};  // touches at the origin
-    const auto [near, far] = std::minmax({q / a, c / q});
-    return Passage{near, far};
+    const Passages inside =
+        below_zero(glm::dot(direction, direction), glm::dot(from, direction), glm::dot(from, from) - radius * radius);
+    return inside.count > 0 ? std::optional(inside.list[0]) : std::nullopt;
 }
 
 std::optional<Passage> through_box(dvec3 origin, dvec3 direction, dvec3 least, dvec3 greatest) {

@@ -51,7 +51,6 @@ std::string figure(double value, int digits) {
 
 std::string how_many(std::uint64_t value, const char* noun = "ray") { return counted(double(value), noun); }
 std::string digits(double value) { return score(known(value)); }
-std::string amount(std::uint64_t value) { return count(value); }
 
 /// "RMSE 0.01 from the picture, FLIP 0.02".
 template <class Record>
@@ -85,7 +84,7 @@ void show_picture(const WhittedRecord& record, StudyReport& report) {
     std::vector<StudyPicture>& seen = report.pictures["seen"];
     seen.push_back({record.picture, "The scene with mirrors and glass",
                     fmt::format("The picture: {} a pixel{}, up to depth {}.", how_many(record.pixel_samples, "eye ray"),
-                                in(kAboutPlaces, record.pixel_places), amount(record.depth))});
+                                in(kAboutPlaces, record.pixel_places), count(record.depth))});
     seen.push_back(
         {record.rays_picture, "The scene, brighter where a pixel has more rays",
          fmt::format("Size of the tree of rays: black 1 ray an eye ray, white {:.3g}.", record.most_rays_a_pixel)});
@@ -93,10 +92,10 @@ void show_picture(const WhittedRecord& record, StudyReport& report) {
         seen.push_back({blind->picture, "The scene, coloured where light arrives by way of a mirror",
                         fmt::format("Not seen: {} of diffuse surfaces to which a plane mirror sends light, {} of them "
                                     "(orange) in shadow of that light.",
-                                    how_many(blind->points, "pixel"), amount(blind->points_in_shadow))});
+                                    how_many(blind->points, "pixel"), count(blind->points_in_shadow))});
         report.sentences.push_back({fmt::format("light by way of a plane mirror, not seen: {} pixels, {} of them in "
                                                 "shadow",
-                                                amount(blind->points), amount(blind->points_in_shadow)),
+                                                count(blind->points), count(blind->points_in_shadow)),
                                     Shown::in_terminal});
     }
     if (const auto& door = record.screen_door) {
@@ -113,8 +112,8 @@ void show_picture(const WhittedRecord& record, StudyReport& report) {
         seen.push_back({single->picture, "The scene with one eye ray a pixel",
                         fmt::format("One eye ray a pixel: {}.", errors_of(*single))});
     for (const WhittedDepthRecord& d : record.depths)
-        report.pictures["depths"].push_back({d.picture, "The scene with rays up to depth " + amount(d.depth),
-                                             fmt::format("Up to depth {}.", amount(d.depth))});
+        report.pictures["depths"].push_back({d.picture, "The scene with rays up to depth " + count(d.depth),
+                                             fmt::format("Up to depth {}.", count(d.depth))});
 }
 
 void show_tables(const WhittedRecord& record, StudyReport& report) {
@@ -164,8 +163,8 @@ std::string bodies_in_words(const Members<std::uint64_t>& bodies, bool plural_fi
     for (const auto& [plural, one] : kKindsOfBodies) {
         const std::uint64_t* many = bodies.find(plural);
         if (many != nullptr && *many > 0)
-            parts.push_back(plural_first ? fmt::format("{}: {}", plural, amount(*many))
-                                         : fmt::format("{} {}", amount(*many), *many == 1 ? one : plural));
+            parts.push_back(plural_first ? fmt::format("{}: {}", plural, count(*many))
+                                         : fmt::format("{} {}", count(*many), *many == 1 ? one : plural));
     }
     return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -177,7 +176,7 @@ void show_formula(const WhittedRecord& record, StudyReport& report) {
     report.words["formula"].push_back({{"bodies", bodies_in_words(formula.bodies, false)},
                                        {"replaced", how_many(formula.triangles_replaced, "triangle")},
                                        {"left", how_many(formula.triangles_left, "triangle")},
-                                       {"samples", formula.light_samples ? amount(*formula.light_samples) : ""}});
+                                       {"samples", formula.light_samples ? count(*formula.light_samples) : ""}});
     report.pictures["formula"] = {
         {record.picture, "The scene with its bodies as triangles",
          fmt::format("Triangles: {} ms.", figure(record.total_ms, 1))},
@@ -187,7 +186,7 @@ void show_formula(const WhittedRecord& record, StudyReport& report) {
     report.sentences.push_back(
         {fmt::format("by formula ({}, instead of {} triangles): {} ms; RMSE {}, FLIP {}, largest "
                      "difference {}",
-                     bodies_in_words(formula.bodies, true), amount(formula.triangles_replaced), figure(formula.ms, 1),
+                     bodies_in_words(formula.bodies, true), count(formula.triangles_replaced), figure(formula.ms, 1),
                      figure(formula.rmse, 5), figure(formula.flip, 4), fmt::format("{:.4g}", formula.max_difference)),
          Shown::in_terminal});
     StudyTable kinds{.name    = "formula",
@@ -229,17 +228,17 @@ void show_kept(const std::vector<WhittedKeptRecord>& kept, StudyReport& report) 
 }
 
 void show_search(const WhittedSearchRecord& search, StudyReport& report) {
-    report.words["search"].push_back({{"rays", amount(search.rays)},
-                                      {"of", amount(search.of)},
-                                      {"triangles", amount(search.triangles)},
+    report.words["search"].push_back({{"rays", count(search.rays)},
+                                      {"of", count(search.of)},
+                                      {"triangles", count(search.triangles)},
                                       {"tree", digits(search.tree_us)},
                                       {"search", digits(search.search_us)},
                                       {"ratio", digits(search.ratio)},
                                       {"seconds", digits(search.all_by_search_ms / 1000)},
-                                      {"different", amount(search.different)}});
+                                      {"different", count(search.different)}});
     report.sentences.push_back(
         {fmt::format("a ray: {} µs by the tree of boxes, {} µs against all {} triangles ({} rays)",
-                     digits(search.tree_us), digits(search.search_us), amount(search.triangles), amount(search.rays)),
+                     digits(search.tree_us), digits(search.search_us), count(search.triangles), count(search.rays)),
          Shown::in_terminal});
     report.tables.push_back({"search",
                              "The same rays in other ways, without vector instructions",
@@ -262,12 +261,12 @@ StudyReport whitted_report(const WhittedRecord& record) {
                     {"lead", lead(record)},
                     {"method", record.method.value_or("none")},
                     {"warnings", record.scene.warnings},
-                    {"depth", amount(record.depth)},
+                    {"depth", count(record.depth)},
                     {"least_weight", fmt::format("{:g}", record.least_weight)},
                     {"has_mirrors", record.blind.has_value()},
                     {"glossy", record.glossy},
                     {"search", Json::array()},
-                    {"undefined", record.undefined > 0 ? amount(record.undefined) : ""}};
+                    {"undefined", record.undefined > 0 ? count(record.undefined) : ""}};
     show_tables(record, report);
     if (record.search) show_search(*record.search, report);
     if (record.kept) show_kept(*record.kept, report);
@@ -275,7 +274,7 @@ StudyReport whitted_report(const WhittedRecord& record) {
     show_formula(record, report);
     if (record.undefined > 0)
         report.sentences.push_back(
-            {fmt::format("S_j left undefined and taken as lit: {}", amount(record.undefined)), Shown::in_terminal});
+            {fmt::format("S_j left undefined and taken as lit: {}", count(record.undefined)), Shown::in_terminal});
     return report;
 }
 
