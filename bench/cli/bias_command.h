@@ -1,7 +1,7 @@
 // `umbra bias`: studies the bias of the shadow z-buffer on scenes and writes the results as data and heat maps.
 #pragma once
 
-#include "umbra/bench/studies/bias/bias_record.h"
+#include "umbra/bench/studies/bias/bias_study.h"
 
 namespace umbra {
 

@@ -4,7 +4,7 @@
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/place_lock.h"
 #include "umbra/bench/run/chosen.h"
-#include "umbra/bench/studies/bias/bias_record.h"
+#include "umbra/bench/studies/bias/bias_study.h"
 
 namespace umbra {
 
@@ -24,7 +24,7 @@ Action bias_command(CLI::App& app, const Common& common) {
         BiasOptions& options = line->options;
         const auto files =
             line->scenes.empty() ? canonical_scenes(scenes_folder()) : scene_files(line->scenes, common.up);
-        check_bias_map(options.map, default_bias_grid());
+        check_bias_map(options.map);
         check_writable_beside(options.out, {"bias.csv"});
         const PlaceLock lock = PlaceLock::inside(options.out);
         std::vector<std::string> failed;

@@ -1,4 +1,4 @@
-#include "umbra/bench/studies/bias/bias_record.h"
+#include "umbra/bench/studies/bias/bias_study.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -49,17 +49,27 @@ BiasErrors count_wrong(const LightTruth& truth, const VisibilityPlane& plane) {
     return errors;
 }
 
+MethodChoice with_bias(MethodChoice choice, std::string_view mode, double constant, double slope,
+                       double normal_offset) {
+    Settings& settings = choice.settings;
+    settings.set("bias", mode);
+    settings.set("constant", constant);
+    settings.set("slope", slope);
+    settings.set("normal_offset", normal_offset);
+    return choice;
+}
+
 /// The studied method on one scene. A setting repeats only the phases that it changes.
 class Lookups {
 public:
-    Lookups(const PreparedScene& prepared, const MethodChoice& choice)
+    Lookups(const PreparedScene& prepared, const MethodChoice& studied)
         : points_(prepared.points),
-          choice_(choice),
-          method_(choice, prepared.scene, prepared.facts),
+          studied_(studied),
+          method_(studied, prepared.scene, prepared.facts),
           plane_(prepared.points.size()) {}
-    [[nodiscard]] BiasErrors errors(LightId light, const LightTruth& truth, const Settings& settings) {
-        choice_.settings = settings;
-        method_.set(choice_);
+    [[nodiscard]] BiasErrors errors(LightId light, const LightTruth& truth, std::string_view mode, double constant = 0,
+                                    double slope = 0, double normal_offset = 0) {
+        method_.set(with_bias(studied_, mode, constant, slope, normal_offset));
         if (!method_.looks_at(points_)) method_.look(points_);
         plane_.clear();
         method_.visibility(light, plane_.out());
@@ -68,7 +78,7 @@ public:
 
 private:
     const PointBatch& points_;
-    MethodChoice choice_;
+    const MethodChoice& studied_;
     MethodAtWork method_;
     VisibilityPlane plane_;
 };
@@ -85,20 +95,29 @@ MethodChoice choose(const std::string& settings) {
     return choice;
 }
 
-Settings with_bias(Settings settings, std::string_view mode, double constant, double slope, double normal_offset) {
-    settings.set("bias", mode);
-    settings.set("constant", constant);
-    settings.set("slope", slope);
-    settings.set("normal_offset", normal_offset);
-    return settings;
-}
-
 /// Every light without extent, in its centre.
 void harden_lights(PreparedScene& prepared) {
     for (Light& light : prepared.scene.lights)
         if (is_area(light.kind)) light.kind = LightKind::point;
     face_lights(prepared.points, prepared.scene);
     prepared.facts = find_facts(prepared.scene);
+}
+
+/// Names the best setting of the grid, and counts those that are better than the automatic bias.
+void compare_settings(BiasSceneRecord& scene) {
+    const BiasGrid grid = bias_grid();
+    std::vector<BiasCell> cells;  // constants fastest, then slopes, then normal offsets
+    for (const BiasSliceRecord& slice : scene.slices)
+        for (std::size_t row = 0; row < grid.slopes.size(); ++row)
+            for (std::size_t column = 0; column < grid.constants.size(); ++column)
+                cells.push_back(
+                    {grid.constants[column], grid.slopes[row], slice.normal_offset, slice.rows[row][column]});
+    scene.best_manual                    = *std::ranges::min_element(cells, {}, [](const BiasCell& c) {
+        return std::tuple(c.errors.interior(), c.errors.edge(), c.constant + c.slope + c.normal_offset);
+    });
+    scene.settings                       = cells.size();
+    scene.settings_better_than_automatic = static_cast<std::uint64_t>(std::ranges::count_if(
+        cells, [&](const BiasCell& c) { return c.errors.interior() < scene.automatic.interior(); }));
 }
 
 }  // namespace
@@ -111,75 +130,69 @@ BiasErrors& BiasErrors::operator+=(const BiasErrors& other) {
     return *this;
 }
 
-BiasGrid default_bias_grid() {
+BiasGrid bias_grid() {
     const std::vector<double> doubling{0, 0.125, 0.25, 0.5, 1, 2, 4, 8, 16, 32, 64, 128};
     return {doubling, doubling, {0, 1, 2, 4}};
 }
 
-const BiasCell& best_cell(const BiasStudy& study) {
-    return *std::ranges::min_element(study.cells, {}, [](const BiasCell& c) {
-        return std::tuple(c.errors.interior(), c.errors.edge(), c.constant + c.slope + c.normal_offset);
-    });
-}
-
-std::size_t better_cells(const BiasStudy& study) {
-    return static_cast<std::size_t>(std::ranges::count_if(
-        study.cells, [&](const BiasCell& c) { return c.errors.interior() < study.automatic.interior(); }));
-}
-
-BiasStudy add_up(const std::vector<BiasStudy>& studies) {
-    BiasStudy all = studies.at(0);
-    all.name      = "all";
-    all.title     = "All scenes";
+BiasSceneRecord add_up(const std::vector<BiasSceneRecord>& scenes) {
+    BiasSceneRecord all = scenes.at(0);
+    all.scene           = "all";
+    all.title           = "All scenes";
     all.lights.clear();
-    for (std::size_t k = 1; k < studies.size(); ++k) {
-        all.points += studies[k].points;
-        all.automatic += studies[k].automatic;
-        all.receiver_plane += studies[k].receiver_plane;
-        for (std::size_t i = 0; i < all.cells.size(); ++i) all.cells[i].errors += studies[k].cells[i].errors;
+    for (std::size_t k = 1; k < scenes.size(); ++k) {
+        all.points += scenes[k].points;
+        all.automatic += scenes[k].automatic;
+        all.receiver_plane += scenes[k].receiver_plane;
+        for (std::size_t slice = 0; slice < all.slices.size(); ++slice)
+            for (std::size_t row = 0; row < all.slices[slice].rows.size(); ++row)
+                for (std::size_t column = 0; column < all.slices[slice].rows[row].size(); ++column)
+                    all.slices[slice].rows[row][column] += scenes[k].slices[slice].rows[row][column];
     }
+    compare_settings(all);
     return all;
 }
 
-void check_bias_map(const std::string& settings, const BiasGrid& grid) {
+void check_bias_map(const std::string& settings) {
     const MethodChoice studied = choose(settings);
-    for (double offset : grid.normal_offsets)
-        (void)studied.info->make(with_bias(studied.settings, "manual", 0, 0, offset));
+    const BiasGrid grid        = bias_grid();
+    for (double offset : grid.normal_offsets) (void)with_bias(studied, "manual", 0, 0, offset).make();
 }
 
-BiasStudy study_bias(PreparedScene prepared, const std::string& settings, const BiasGrid& grid,
-                     const std::function<void(const std::string&)>& progress) {
-    check_bias_map(settings, grid);
+BiasSceneRecord study_bias(PreparedScene prepared, const std::string& settings,
+                           const std::function<void(const std::string&)>& progress) {
+    check_bias_map(settings);
     const MethodChoice studied = choose(settings);
     harden_lights(prepared);
-    const Scene& scene = prepared.scene;
-    BiasStudy study{scene.name, scene.title, {}, 0, {}, {}, {}};
+    const Scene& scene  = prepared.scene;
+    const BiasGrid grid = bias_grid();
+    BiasSceneRecord study{.scene = scene.name, .title = scene.title};
     for (const Light& light : scene.lights) study.lights.push_back(light.name);
     for (double offset : grid.normal_offsets)
-        for (double slope : grid.slopes)
-            for (double constant : grid.constants) study.cells.push_back({constant, slope, offset, {}});
+        study.slices.push_back(
+            {offset, std::vector(grid.slopes.size(), std::vector<BiasErrors>(grid.constants.size()))});
 
     const Reference reference = default_reference(prepared.facts);
     progress(fmt::format("{}: {}", scene.name, reference.choice.info->name));
     MethodAtWork exact(reference.choice, scene, prepared.facts);
     exact.look(prepared.points);
     Lookups lookups(prepared, studied);
-    const auto bias = [&](std::string_view mode, double constant, double slope, double normal_offset) {
-        return with_bias(studied.settings, mode, constant, slope, normal_offset);
-    };
     for (LightId light = 0; light < scene.lights.size(); ++light) {
         const LightTruth truth = find_truth(exact, scene, prepared.points, light);
         study.points += static_cast<std::uint64_t>(
             std::ranges::count_if(truth.place, [](LightTruth::Place p) { return p != LightTruth::Place::unjudged; }));
-        study.automatic += lookups.errors(light, truth, bias("auto", 0, 0, 0));
-        study.receiver_plane += lookups.errors(light, truth, bias("receiver_plane", 0, 0, 0));
-        for (BiasCell& cell : study.cells) {
-            if (cell.constant == 0 && cell.slope == 0)
-                progress(
-                    fmt::format("{}: {}, normal offset {}", scene.name, scene.lights[light].name, cell.normal_offset));
-            cell.errors += lookups.errors(light, truth, bias("manual", cell.constant, cell.slope, cell.normal_offset));
+        study.automatic += lookups.errors(light, truth, "auto");
+        study.receiver_plane += lookups.errors(light, truth, "receiver_plane");
+        for (BiasSliceRecord& slice : study.slices) {
+            progress(
+                fmt::format("{}: {}, normal offset {}", scene.name, scene.lights[light].name, slice.normal_offset));
+            for (std::size_t row = 0; row < grid.slopes.size(); ++row)
+                for (std::size_t column = 0; column < grid.constants.size(); ++column)
+                    slice.rows[row][column] += lookups.errors(light, truth, "manual", grid.constants[column],
+                                                              grid.slopes[row], slice.normal_offset);
         }
     }
+    compare_settings(study);
     return study;
 }
 

@@ -1,4 +1,5 @@
-// The bias study of the shadow z-buffer: false shadow (acne) against false light (detachment) over what bias can be.
+// The bias study of the shadow z-buffer: false shadow (acne) against false light (detachment) over what bias can be, as
+// a record of counts of wrong points.
 //
 // Settings of the visibility phase alone reuse the maps that are there; the truth is the default reference.
 #pragma once
@@ -9,7 +10,7 @@
 
 #include "umbra/bench/run/describe.h"
 #include "umbra/bench/run/prepare.h"
-#include "umbra/bench/run/run.h"
+#include "umbra/bench/studies/study_report.h"
 #include "umbra/core/errors/visibility_error.h"
 
 namespace umbra {
@@ -21,42 +22,90 @@ struct BiasErrors {
     [[nodiscard]] std::uint64_t edge() const { return false_shadow.edge + false_light.edge; }
     BiasErrors& operator+=(const BiasErrors& other);
 };
+DESCRIBE(BiasErrors) { MEMBERS(false_shadow, false_light); }
 
 /// One setting of bias=manual, and what it costs.
 struct BiasCell {
     double constant = 0, slope = 0, normal_offset = 0;
     BiasErrors errors;
 };
+DESCRIBE(BiasCell) {
+    of.all(&R::errors);
+    MEMBERS(constant, slope, normal_offset);
+}
+
+struct BiasSliceRecord {
+    double normal_offset = 0;
+    std::vector<std::vector<BiasErrors>> rows{};
+};
+DESCRIBE(BiasSliceRecord) {
+    MEMBERS(normal_offset);
+    of(MEMBER(rows), "one a slope, with an entry a constant");
+}
+
+struct BiasSceneRecord {
+    std::string scene{}, title{};
+    std::vector<std::string> lights{};
+    std::uint64_t points = 0;
+    BiasErrors automatic{}, receiver_plane{};
+    BiasCell best_manual{};  ///< of equal ones with the fewest wrong points at edges, then with the smaller bias
+    std::uint64_t settings = 0, settings_better_than_automatic = 0;  ///< the latter: fewer wrong interior points
+    std::vector<BiasSliceRecord> slices{};
+};
+DESCRIBE(BiasSceneRecord) {
+    MEMBERS(scene, title, lights);
+    of(MEMBER(points), "judged, over all lights");
+    of(MEMBER(automatic), "bias=auto");
+    of(MEMBER(receiver_plane), "bias=receiver_plane");
+    of(MEMBER(best_manual), "bias=manual with the fewest wrong interior points");
+    MEMBERS(settings, settings_better_than_automatic);
+    of(MEMBER(slices), "one a normal offset");
+}
 
 struct BiasGrid {
     /// 0, then twice as much each time: widths of a sample, depth gradients a sample, widths of a sample.
     std::vector<double> constants, slopes, normal_offsets;
 };
-[[nodiscard]] BiasGrid default_bias_grid();
+DESCRIBE(BiasGrid) {
+    of(MEMBER(constants), "widths of a sample");
+    of(MEMBER(slopes), "depth gradients a sample");
+    of(MEMBER(normal_offsets), "widths of a sample");
+}
+/// The settings that are studied.
+[[nodiscard]] BiasGrid bias_grid();
 
-struct BiasStudy {
-    std::string name, title;  ///< of the scene
-    std::vector<std::string> lights;
-    std::uint64_t points = 0;              ///< judged, over all lights
-    BiasErrors automatic, receiver_plane;  ///< bias=auto, bias=receiver_plane
-    std::vector<BiasCell> cells;           ///< constants fastest, then slopes, then normal offsets
+struct BiasRecord {
+    HeadRecord head{};
+    MachineRecord machine{};
+    SizeRecord size{};
+    std::string map{};
+    BiasGrid grid{};
+    std::vector<BiasSceneRecord> bias{};
+    std::vector<ListedFailureRecord> failed{};
+    std::vector<std::string> csv{};
 };
+DESCRIBE(BiasRecord) {
+    of.all(&R::head);
+    MEMBERS(machine, size);
+    of(MEMBER(map), "settings of shadow_zbuffer, as typed");
+    of.all(&R::grid);
+    of(MEMBER(bias), "all scenes added up, where there are several, and each of them");
+    MEMBERS(failed, csv);
+}
 
-/// Fewest interior errors; of equal ones fewest at edges, then the smaller bias.
-[[nodiscard]] const BiasCell& best_cell(const BiasStudy& study);
-/// How many cells have fewer interior errors than the automatic bias.
-[[nodiscard]] std::size_t better_cells(const BiasStudy& study);
-
-/// All scenes' counts added up, as a study called "all".
-[[nodiscard]] BiasStudy add_up(const std::vector<BiasStudy>& studies);
+/// All scenes' counts added up, as a scene called "all".
+[[nodiscard]] BiasSceneRecord add_up(const std::vector<BiasSceneRecord>& scenes);
 
 /// Throws UsageError where the settings are wrong, set a bias, or exclude one of the grid.
-void check_bias_map(const std::string& settings, const BiasGrid& grid);
+void check_bias_map(const std::string& settings);
 
 /// Runs shadow_zbuffer with `settings` ("k=v,k=v", none of them about bias; may be empty) over the grid. Area lights
 /// are taken for points in their centres, as the method takes them: the study is of bias, not of penumbrae. Throws
 /// UsageError where the settings are wrong or set a bias.
-[[nodiscard]] BiasStudy study_bias(PreparedScene prepared, const std::string& settings, const BiasGrid& grid,
-                                   const std::function<void(const std::string&)>& progress);
+[[nodiscard]] BiasSceneRecord study_bias(PreparedScene prepared, const std::string& settings,
+                                         const std::function<void(const std::string&)>& progress);
+
+/// Of the record of `umbra bias` alone.
+[[nodiscard]] StudyReport bias_report(const BiasRecord& record);
 
 }  // namespace umbra

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "umbra/bench/cli/bias_command.h"
-#include "umbra/bench/studies/bias/bias_record.h"
+#include "umbra/bench/studies/bias/bias_study.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/errors/error_causes.h"
 #include "umbra/tests/support/temporary_folder.h"
