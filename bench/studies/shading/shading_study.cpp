@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -97,10 +98,8 @@ struct Measured {
 
 /// One run of a model.
 void run(ShadingModel model, const PreparedScene& prepared, AskedMethod& shadows, Measured& measured) {
-    measured.times_ms.push_back(timed_ms([&] {
-        measured.shaded =
-            shade_by(model, prepared.scene, prepared.points, [&](const PointBatch& points) { return shadows(points); });
-    }));
+    measured.times_ms.push_back(
+        timed_ms([&] { measured.shaded = shade_by(model, prepared.scene, prepared.points, std::ref(shadows)); }));
     measured.asked = model == ShadingModel::constant ? 0 : shadows.asked();
 }
 
@@ -183,7 +182,7 @@ ShadingRecord compare_shading(const PreparedScene& prepared, const ShadingOption
     }
     if (!is_too_noisy(record.noise_bar)) record.front = shading_front(record.models);
     if (!options.limits.empty()) record.choice = choose_shading(record, options.limits);
-    for (const Stage& stage : draw_stages(prepared, [&](const PointBatch& points) { return shadows(points); })) {
+    for (const Stage& stage : draw_stages(prepared, std::ref(shadows))) {
         const std::string picture = fmt::format("stage_{}_{}.png", record.stages.size() + 1, stage.name);
         write_image(folder / picture, stage.picture);
         record.stages.push_back({std::string(stage.name), std::string(stage.about), picture});
