@@ -119,10 +119,6 @@ Service CascadedMaps::serves(const SceneFacts& facts) const {
     return {How::approximately, why + "."};
 }
 
-std::unique_ptr<const Built> CascadedMaps::build(const Scene& scene, const SceneFacts& facts) const {
-    return std::make_unique<BuiltCasters>(scene, facts, true);
-}
-
 std::unique_ptr<const Aimed> CascadedMaps::aim(const Built& built, LightId light) const {
     if (is_sun(built.scene.lights[light]))
         return std::make_unique<Sun>(

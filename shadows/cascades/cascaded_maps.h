@@ -18,11 +18,10 @@ struct CascadedMapsOptions : ComparingOptions, SplitOptions {
     CascadeFilter filter   = CascadeFilter::nearest;
 };
 
-class CascadedMaps final : public MethodWith<CascadedMapsOptions> {
+class CascadedMaps final : public MethodWith<CascadedMapsOptions, BuiltCasters> {
 public:
     explicit CascadedMaps(const Settings& settings);
     [[nodiscard]] Service serves(const SceneFacts& facts) const override;
-    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override;
     [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override;
     [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override;
     /// For a directional light it fits and draws the cascades first, each time, as for a moved camera. The camera is

@@ -129,7 +129,7 @@ struct FilteredViews final : LightViews {
     std::vector<SummedMoments> tables;  ///< in their place, where blockers of an area light are searched
 };
 
-class FilteredMap final : public MethodWith<FilteredOptions> {
+class FilteredMap final : public MethodWith<FilteredOptions, BuiltCasters> {
 public:
     explicit FilteredMap(const Settings& settings) : MethodWith(settings) {
         const double most = options.precision == MomentPrecision::single ? kMostExponentSingle : kMostExponentTwofold;
@@ -165,10 +165,6 @@ public:
             why += finds_blockers_ ? "; penumbrae are as wide as those behind one blocker that is parallel to the map"
                                    : "; area lights are taken as their centres, so that penumbrae are missing";
         return {How::approximately, why + "."};
-    }
-
-    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
-        return std::make_unique<BuiltCasters>(scene, facts, options.fit == Fit::casters);
     }
 
     [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {

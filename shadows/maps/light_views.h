@@ -52,11 +52,20 @@ private:
     std::vector<MapView> kept_;  ///< of one light at most
 };
 
+/// Whether maps are fitted to Casters or to the scene.
+enum class Fit : std::uint8_t { casters, scene };
+
+/// Options of methods whose maps are LightViews alone (map_options.h).
+struct ViewOptions {
+    Fit fit         = Fit::casters;
+    double surround = 0.5;
+};
+
 /// The result of `build` for methods with depth maps: the casters.
 class BuiltCasters final : public Built {
 public:
-    BuiltCasters(const Scene& of, const SceneFacts& its_facts, bool leave_out)
-        : Built(of, its_facts), casters(of, its_facts, leave_out) {}
+    BuiltCasters(const Scene& of, const SceneFacts& its_facts, const ViewOptions& options = {})
+        : Built(of, its_facts), casters(of, its_facts, options.fit == Fit::casters) {}
     [[nodiscard]] std::size_t memory_bytes() const override { return casters.memory_bytes(); }
     const Casters casters;
     const std::shared_ptr<SpareMaps> spare = std::make_shared<SpareMaps>();

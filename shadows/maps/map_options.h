@@ -13,9 +13,6 @@
 
 namespace umbra {
 
-/// Whether maps are fitted to Casters or to the scene.
-enum class Fit : std::uint8_t { casters, scene };
-
 struct MapOptions {
     int resolution       = 2048;
     double constant      = 0;
@@ -28,12 +25,6 @@ struct MapOptions {
 struct ComparingOptions : MapOptions {
     BiasMode bias = BiasMode::automatic;
     bool bilinear = true;
-};
-
-/// For methods whose maps are LightViews alone.
-struct ViewOptions {
-    Fit fit         = Fit::casters;
-    double surround = 0.5;
 };
 
 /// For methods that search for the blockers of an area light.
@@ -61,7 +52,7 @@ struct MapMargins {
     return m;
 }
 
-// The parameters of the structs above, for the method's own struct `Options`.
+// The parameters of the structs above and of ViewOptions, for the method's own struct `Options`.
 
 template <class Options>
 [[nodiscard]] Parameter resolution_parameter(std::string_view doc, std::string_view sweep) {

@@ -105,7 +105,7 @@ const std::vector<Parameter> kParameters{
     surround_parameter<Options>(),
 };
 
-class ShadowZBuffer final : public MethodWith<Options> {
+class ShadowZBuffer final : public MethodWith<Options, BuiltCasters> {
 public:
     explicit ShadowZBuffer(const Settings& settings) : MethodWith(settings) {
         if (options.filter != FilterKind::nearest)
@@ -138,10 +138,6 @@ public:
             why += "; samples depend on the pixel that the camera sees a point through";
         if (options.contact_steps > 0) why += "; contact shadows of what the camera sees";
         return {How::approximately, why + "."};
-    }
-
-    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
-        return std::make_unique<BuiltCasters>(scene, facts, options.fit == Fit::casters);
     }
 
     [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {

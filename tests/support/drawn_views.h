@@ -9,7 +9,9 @@ namespace umbra {
 /// `scene` must outlive it. Throws as LightViews does.
 struct DrawnViews {
     DrawnViews(const Scene& scene, const LightViews::Options& options, bool fit_to_casters = true, LightId light = 0)
-        : facts(find_facts(scene)), built(scene, facts, fit_to_casters), aimed(built, light, options) {}
+        : facts(find_facts(scene)),
+          built(scene, facts, {.fit = fit_to_casters ? Fit::casters : Fit::scene}),
+          aimed(built, light, options) {}
 
     [[nodiscard]] const std::vector<MapView>& views() const { return aimed.views(); }
     [[nodiscard]] std::size_t memory_bytes() const { return built.memory_bytes() + aimed.memory_bytes(); }

@@ -282,7 +282,7 @@ TEST(ShadowZBuffer, MapsInUsedMemoryAreAsNewOnes) {
     scene.lights.push_back(directional_light({0.1f, -1, 0.2f}));
     const SceneFacts facts = find_facts(scene);
     const LightViews::Options options{.resolution = 64};
-    const BuiltCasters built(scene, facts, false);
+    const BuiltCasters built(scene, facts, {.fit = Fit::scene});
     for (const LightId light : {0u, 1u, 2u, 1u, 0u}) {
         const LightViews used(built, light, options);  // in the memory of the one before
         const DrawnViews fresh(scene, options, false, light);
