@@ -38,6 +38,7 @@ struct Extent {
         low_v = std::min(low_v, e.low_v), high_v = std::max(high_v, e.high_v);
         depth = std::min(depth, e.depth);
     }
+    [[nodiscard]] bool empty() const { return low_u > high_u; }
     [[nodiscard]] float perimeter() const { return high_u - low_u + (high_v - low_v); }  ///< half of it
 };
 

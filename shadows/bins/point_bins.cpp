@@ -341,7 +341,7 @@ void PointBins::drop_hidden() {
                         continue;
                     }
                     const Box box = box_around(levels_[level - 1][child]);
-                    box.empty() ? nodes[n].clear(lane) : box.write(nodes[n], lane);
+                    box.empty() ? nodes[n].clear(lane) : nodes[n].set(lane, box);
                 }
         });
     }
@@ -356,7 +356,7 @@ void PointBins::add_levels(std::size_t count, const BoxOf& box_of) {
             for (std::size_t n = begin; n < end; ++n)
                 for (std::size_t lane = 0; lane < kLanes; ++lane) {
                     const std::size_t k = n * kLanes + lane;
-                    k < below ? box_of_child(k).write(nodes[n], lane) : nodes[n].clear(lane);
+                    k < below ? nodes[n].set(lane, box_of_child(k)) : nodes[n].clear(lane);
                 }
         });
         levels_.push_back(std::move(nodes));

@@ -20,8 +20,7 @@ namespace umbra::bins {
 /// Where something is along Morton's curve over a box.
 class CurveOver {
 public:
-    template <class Box>
-    explicit CurveOver(const Box& box)
+    explicit CurveOver(const Extent& box)
         : low_u_(box.low_u),
           low_v_(box.low_v),
           scale_u_(scale(box.high_u - box.low_u)),
@@ -101,9 +100,8 @@ public:
     };
 
     /// Around points, or around boxes.
-    struct Box {
-        float low_u = Extents::kFar, high_u = -Extents::kFar, low_v = Extents::kFar, high_v = -Extents::kFar;
-        float depth = -Extents::kFar;
+    struct Box : Extent {
+        Box() : Extent(nothing()) { depth = -Extents::kFar; }
 
         void add(float from_u, float to_u, float from_v, float to_v, float at) {
             low_u = std::min(low_u, from_u), high_u = std::max(high_u, to_u);
@@ -111,12 +109,6 @@ public:
             depth = std::max(depth, at);
         }
         void add(const Box& other) { add(other.low_u, other.high_u, other.low_v, other.high_v, other.depth); }
-        void write(Extents& to, std::size_t lane) const {
-            to.low_u[lane] = low_u, to.high_u[lane] = high_u, to.low_v[lane] = low_v, to.high_v[lane] = high_v;
-            to.depth[lane] = depth;
-        }
-        [[nodiscard]] bool empty() const { return low_u > high_u; }
-        [[nodiscard]] float perimeter() const { return high_u - low_u + (high_v - low_v); }  ///< half of it
         [[nodiscard]] double area() const {
             return empty() ? 0 : static_cast<double>(high_u - low_u) * static_cast<double>(high_v - low_v);
         }
