@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "umbra/core/base/geometry.h"
 #include "umbra/core/base/lanes.h"
 #include "umbra/shadows/geometry/clipped_polygon.h"
 
@@ -29,21 +30,14 @@ constexpr double kNearTriangle = 1e-5;
 
 double size(dvec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// The distance of the origin from a segment.
-double distance(dvec3 a, dvec3 b) {
-    const dvec3 ab      = b - a;
-    const double square = glm::dot(ab, ab);
-    const double t      = square > 0 ? std::clamp(-glm::dot(a, ab) / square, 0.0, 1.0) : 0;
-    return glm::length(a + t * ab);
-}
-
 /// Whether the origin is about as near to a triangle as `limit`, or nearer: 2 limit is near, 4 limit is not. `limit` is
 /// far above roundings of the corners.
 bool is_near(const std::array<dvec3, 3>& c, double limit) {
     for (int k = 0; k < 3; ++k)  // most are far away along some axis
         if (std::min({c[0][k], c[1][k], c[2][k]}) > 2 * limit || std::max({c[0][k], c[1][k], c[2][k]}) < -2 * limit)
             return false;
-    if (std::min({distance(c[0], c[1]), distance(c[1], c[2]), distance(c[2], c[0])}) <= 2 * limit) return true;
+    for (std::size_t k = 0; k < 3; ++k)
+        if (distance_to_segment(dvec3(0), c[k], c[(k + 1) % 3]) <= 2 * limit) return true;
     const dvec3 normal  = glm::cross(c[1] - c[0], c[2] - c[0]);
     const double length = glm::length(normal);
     if (!(length > 0) || std::abs(glm::dot(normal, c[0])) > 2 * limit * length) return false;
