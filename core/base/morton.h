@@ -2,6 +2,8 @@
 // other.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace umbra {
@@ -21,6 +23,19 @@ namespace umbra {
 [[nodiscard]] constexpr std::uint64_t morton_code(std::uint32_t x, std::uint32_t y) {
     return spread_bits(x) | spread_bits(y) << 1;
 }
+
+struct MortonCell {
+    std::uint8_t x = 0, y = 0;
+};
+/// The cells of a square in the order of the curve. kSide: cells along a side, a power of two, at most 256.
+template <std::size_t kSide>
+inline constexpr auto kMortonSquare = [] {
+    std::array<MortonCell, kSide * kSide> cells;
+    for (std::uint32_t y = 0; y < kSide; ++y)
+        for (std::uint32_t x = 0; x < kSide; ++x)
+            cells[morton_code(x, y)] = {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y)};
+    return cells;
+}();
 
 /// Bit k of x, of the lowest 16, becomes bit 3 k of the result; the bits between are 0.
 [[nodiscard]] constexpr std::uint64_t spread_bits_by_three(std::uint32_t x) {

@@ -19,18 +19,6 @@ constexpr std::size_t kTileSide = 64;  ///< of a raster, pixels
 constexpr double kMostOverlap   = 8;   ///< of a raster's tiles
 static_assert(kTileSide * kTileSide == PointBins::kTile);
 
-struct Pixel {
-    std::uint8_t column, row;
-};
-/// The pixels of a tile along Morton's curve.
-constexpr std::array<Pixel, PointBins::kTile> pixels_of_tile() {
-    std::array<Pixel, PointBins::kTile> pixels{};
-    for (std::uint8_t row = 0; row < kTileSide; ++row)
-        for (std::uint8_t column = 0; column < kTileSide; ++column) pixels[morton_code(column, row)] = {column, row};
-    return pixels;
-}
-constexpr auto kPixelsOfTile = pixels_of_tile();
-
 /// Writes the corners of a triangle as those of lane `lane`.
 void load(const Scene& scene, TriangleId t, LightImage::Corners& corners, std::size_t lane) {
     for (int c = 0; c < 3; ++c) {
@@ -75,8 +63,8 @@ public:
             const std::size_t left = tile % across * kTileSide, top = tile / across * kTileSide;
             std::array<std::uint32_t, PointBins::kTile> asking;
             std::size_t n = 0;
-            for (const Pixel pixel : kPixelsOfTile) {
-                const std::size_t x = left + pixel.column, y = top + pixel.row;
+            for (const MortonCell pixel : kMortonSquare<kTileSide>) {
+                const std::size_t x = left + pixel.x, y = top + pixel.y;
                 if (x < width && y < height && points_.asks(light_, y * width + x))
                     asking[n++] = static_cast<std::uint32_t>(y * width + x);
             }

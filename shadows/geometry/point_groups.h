@@ -17,18 +17,8 @@ namespace umbra {
 
 namespace point_groups_detail {
 
-inline constexpr std::size_t kSquare = 32;  ///< pixels: what is read of so few stays in the cache
-struct Pixel {
-    std::uint8_t x = 0, y = 0;
-};
-/// The pixels of a square in the order of the Morton curve.
-inline constexpr auto kPixels = [] {
-    std::array<Pixel, kSquare * kSquare> pixels;
-    for (std::uint8_t y = 0; y < kSquare; ++y)
-        for (std::uint8_t x = 0; x < kSquare; ++x) pixels[morton_code(x, y)] = {x, y};
-    return pixels;
-}();
-
+inline constexpr std::size_t kSquare   = 32;  ///< pixels: what is read of so few stays in the cache
+inline constexpr auto& kPixels         = kMortonSquare<kSquare>;
 inline constexpr std::size_t kTogether = 16;
 
 /// Whether four numbers in each of four rows, `pitch` apart, are all the same.
