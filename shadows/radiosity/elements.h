@@ -64,11 +64,12 @@ private:
     static Corners middles(const Corners& corner) {
         return {0.5 * (corner[1] + corner[2]), 0.5 * (corner[2] + corner[0]), 0.5 * (corner[0] + corner[1])};
     }
-    static Corners child(std::size_t k, const Corners& corner) {
-        Corners of_child = middles(corner);
-        if (k < 3)
-            of_child = {k == 0 ? corner[0] : of_child[k == 1 ? 2 : 1], k == 1 ? corner[1] : of_child[k == 0 ? 2 : 0],
-                        k == 2 ? corner[2] : of_child[k == 0 ? 1 : 0]};
+    /// Child k's corners, or values there. `middle`: of the parent's edges, each opposite to its corner.
+    template <class T>
+    static std::array<T, 3> child(std::size_t k, const std::array<T, 3>& corner, const std::array<T, 3>& middle) {
+        if (k == 3) return middle;
+        std::array<T, 3> of_child;
+        for (std::size_t i = 0; i < 3; ++i) of_child[i] = i == k ? corner[k] : middle[3 - i - k];
         return of_child;
     }
 
@@ -81,7 +82,7 @@ private:
             u                   = k == 3 ? 1 - 2 * u : k == 1 ? 2 * u - 1 : 2 * u;
             v                   = k == 3 ? 1 - 2 * v : k == 2 ? 2 * v - 1 : 2 * v;
             node                = nodes_[node].children + k;
-            if (corners != nullptr) *corners = child(k, *corners);
+            if (corners != nullptr) *corners = child(k, *corners, middles(*corners));
         }
         return node;
     }
@@ -101,11 +102,8 @@ private:
         if (!(change > threshold)) return;
         const std::size_t first = nodes_.size();
         nodes_[node].children   = static_cast<std::uint32_t>(first);
-        nodes_.push_back({{at[0], at_middle[2], at_middle[1]}, 0});
-        nodes_.push_back({{at_middle[2], at[1], at_middle[0]}, 0});
-        nodes_.push_back({{at_middle[1], at_middle[0], at[2]}, 0});
-        nodes_.push_back({at_middle, 0});
-        for (std::size_t k = 0; k < 4; ++k) split(first + k, child(k, corner), value, levels - 1, threshold);
+        for (std::size_t k = 0; k < 4; ++k) nodes_.push_back({child(k, at, at_middle), 0});
+        for (std::size_t k = 0; k < 4; ++k) split(first + k, child(k, corner, middle), value, levels - 1, threshold);
     }
 
     std::vector<Node> nodes_;
