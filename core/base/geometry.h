@@ -1,8 +1,10 @@
-// Geometry that several rooms need: axes across a direction, distances to segments and triangles. All in double.
+// Geometry that several rooms need: axes across a direction, an order of positions, distances to segments and triangles. All
+// in double.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "umbra/core/base/math.h"
 
@@ -19,6 +21,10 @@ struct Axes {
     const dvec3 u      = glm::normalize(glm::cross(helper, n));
     return {u, glm::cross(n, u)};
 }
+
+/// Whether a is before b in the order by x, y and z. Both triangles of an edge take its ends in that order, so that
+/// both compute the same numbers.
+[[nodiscard]] inline bool comes_before(dvec3 a, dvec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
 
 /// Distance from p to the segment from a to b, which may be one point.
 [[nodiscard]] inline double distance_to_segment(dvec3 p, dvec3 a, dvec3 b) {

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <tuple>
 #include <utility>
 
+#include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/rounding.h"
 #include "umbra/core/render/facing.h"
@@ -51,7 +51,7 @@ Sign sign_of(double value, double magnitude, double size) {
 /// Where that is 0, the side is that of a ray turned by a little, the same for all edges: a ray through an edge inside
 /// a surface meets one of its triangles, not none or two.
 Sign side_of_edge(dvec3 p, dvec3 d, dvec3 a, dvec3 b, double size) {
-    const bool swapped = std::tie(b.x, b.y, b.z) < std::tie(a.x, a.y, a.z);
+    const bool swapped = comes_before(b, a);
     if (swapped) std::swap(a, b);
     const dvec3 across = glm::cross(a - p, b - a);
     double side        = glm::dot(across, d);

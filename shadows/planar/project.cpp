@@ -80,13 +80,6 @@ std::vector<Source> sources_of(const Light& light, int samples) {
 
 namespace {
 
-/// The order in which an edge's ends are taken, so that both triangles of an edge compute the same.
-bool before(dvec3 a, dvec3 b) {
-    if (a.x != b.x) return a.x < b.x;
-    if (a.y != b.y) return a.y < b.y;
-    return a.z < b.z;
-}
-
 /// The part of a triangle at and above a height over the plane, a convex polygon.
 /// [Ivan Sutherland, Gary Hodgman, Reentrant Polygon Clipping, 1974]
 std::vector<dvec3> clip_below(const Triangle& triangle, double height) {
@@ -95,7 +88,7 @@ std::vector<dvec3> clip_below(const Triangle& triangle, double height) {
         dvec3 a = triangle[k], b = triangle[(k + 1) % 3];
         if (a.z >= height) kept.push_back(a);
         if ((a.z < height && b.z > height) || (a.z > height && b.z < height)) {
-            if (before(b, a)) std::swap(a, b);
+            if (comes_before(b, a)) std::swap(a, b);
             const dvec3 cut = a + (b - a) * ((a.z - height) / (a.z - b.z));
             kept.emplace_back(cut.x, cut.y, height);
         }
@@ -227,7 +220,7 @@ std::size_t Shadows::memory_bytes() const {
 
 /// Only differences of near points meet the large ones of a far source.
 EdgeFunction side_of_edge(const LocalSource& source, dvec3 from, dvec3 to, double sign) {
-    if (before(to, from)) {
+    if (comes_before(to, from)) {
         std::swap(from, to);
         sign = -sign;
     }

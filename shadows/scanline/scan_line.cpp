@@ -15,8 +15,8 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <tuple>
 
+#include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/rounding.h"
 #include "umbra/core/render/facing.h"
@@ -279,7 +279,7 @@ private:
             // triangle on the edge's other side, so that no point is between the two.
             dvec3 p = corner[k], q = corner[(k + 1) % 3];
             double sign = turn;
-            if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(p, q), sign = -turn;
+            if (comes_before(q, p)) std::swap(p, q), sign = -turn;
             const dvec3 to_light = infinite ? end : end - p;
             const double factor  = sum_of_magnitudes(to_light) + (infinite ? 0 : size);
             shadow.sides[k + 1]  = {sign * glm::cross(q - p, to_light), p, sign * (q - p),
