@@ -189,10 +189,7 @@ void ExactArea::halve(const PointBatch& points, std::span<std::uint32_t> which) 
 /// Finds the candidates of all these points. False where they are too many for that, or the light is too close.
 bool ExactArea::look_around(const PointBatch& points, std::span<const std::uint32_t> which, Workspace& work) const {
     if (which.size() < kFewest) return false;
-    constexpr double kApart = 1.0 / 8;  // of the distance to the light: they do not lie together
-    const auto at           = [&](std::uint32_t i) {
-        return ExactPoint(occluders_.scene, points.triangle[i], points.u[i], points.v[i]);
-    };
+    constexpr double kApart    = 1.0 / 8;  // of the distance to the light: they do not lie together
     const std::uint32_t middle = which[which.size() / 2];
     const Viewpoint viewpoint(occluders_.scene, points.triangle[middle], points.u[middle], points.v[middle],
                               work.coplanar);
@@ -200,8 +197,8 @@ bool ExactArea::look_around(const PointBatch& points, std::span<const std::uint3
     if (!plane || !(plane->rounding <= kRoughest)) return false;
     double around = 0;
     for (const std::uint32_t i : which) {
-        const ExactPoint p = at(i);
-        around             = std::max(around, largest(p.rounded() - viewpoint.point().rounded()) + p.slack());
+        const ExactPoint p(occluders_.scene, points, i);
+        around = std::max(around, largest(p.rounded() - viewpoint.point().rounded()) + p.slack());
     }
     const Entries to_centre = viewpoint.point().to(plane->centre_from_corner);
     if (around > kApart * largest(to_centre.value)) return false;

@@ -21,7 +21,6 @@ struct PartWithin {
 
 /// |x| <= 1 between the heights -1 and 1.
 struct WholeSquare {
-    static constexpr double area = 4;
     /// The area between x = 0 and the rim on one side, and between two heights.
     [[nodiscard]] static double half_area(double low, double high) { return high - low; }
     /// For a segment at any height: ends have the same side of the rim in all segments that they belong to.
@@ -39,7 +38,6 @@ struct WholeSquare {
 
 /// The unit disk.
 struct WholeDisk {
-    static constexpr double area = 3.14159265358979323846;
     [[nodiscard]] static double half_area(double low, double high) {
         const auto below = [](double y) { return (y * std::sqrt((1 - y) * (1 + y)) + std::asin(y)) / 2; };
         return below(high) - below(low);
