@@ -102,7 +102,6 @@ public:
 
     /// Vectors along which light travels to the corners, of any length.
     void travel(const Corners& corners, Corners& to) const;
-    [[nodiscard]] bool infinite() const { return infinite_; }
 
 private:
     /// (x, y, w) of a face: the place is (x / w, y / w) from the face's middle.

@@ -39,13 +39,6 @@ RadiosityElements::ElementId RadiosityElements::element(const PointBatch& points
     return {at.patch, static_cast<std::uint32_t>(sides[points.flipped[i]][at.patch].leaf(at.u, at.v))};
 }
 
-std::size_t RadiosityElements::elements() const {
-    std::size_t count = 0;
-    for (const auto& side : sides)
-        for (const Elements& patch : side) count += patch.leaves();
-    return count;
-}
-
 std::size_t RadiosityElements::memory_bytes() const {
     std::size_t bytes = 0;
     for (const auto& side : sides)

@@ -44,8 +44,6 @@ struct RadiosityElements final : Aimed {
         std::uint32_t leaf     = 0;
     };
     [[nodiscard]] ElementId element(const PointBatch& points, std::size_t i) const;
-    /// The number of elements, of both sides of all patches.
-    [[nodiscard]] std::size_t elements() const;
 
     using ElementsOfPatches = std::vector<patches::Elements>;  ///< one a patch
     const RadiosityPatches& surfaces;
