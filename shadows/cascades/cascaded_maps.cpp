@@ -204,8 +204,10 @@ CascadedMaps::Lookups CascadedMaps::look_up(const Aimed& aimed, const Looked& lo
         note(choice.first);
         note(choice.second);
     };
+    FacetOfPoint of{scene, points};
+    const dvec3 p = alone ? of.go_to(*alone) : dvec3(0);
     if (alone)
-        note_choice(*alone, {}, exact_position(scene, points, *alone));
+        note_choice(*alone, of.facet, p);
     else
         for_each_facet(scene, points, aimed.light, note_choice);
     lookups.drawn.resize(cascades.parts.size() + 1);
@@ -220,8 +222,7 @@ CascadedMaps::Lookups CascadedMaps::look_up(const Aimed& aimed, const Looked& lo
             MapView{cascade.frame, DepthMap(options.resolution, options.resolution, DepthFormat::float32)});
         if (!alone)
             view.map.draw(clip_from_world, scene.positions, triangles, Faces::all);
-        else if (const auto at = receive(view, facet_of(scene, points.triangle[*alone], points.flipped[*alone] != 0),
-                                         exact_position(scene, points, *alone), bias_, filter_))
+        else if (const auto at = receive(view, of.facet, p, bias_, filter_))
             draw_around(view, casters, Faces::all, texel_of(*at, view), filter_.radius + 1);
     }
     return lookups;
@@ -267,11 +268,12 @@ void CascadedMaps::blame(const Aimed& aimed, const Looked& looked, std::span<Tri
 }
 
 Reason CascadedMaps::explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const {
-    const Scene& scene           = aimed.scene();
-    const PointBatch& points     = looked.points;
-    const Lookups lookups        = look_up(aimed, looked, i);
-    const Facet facet            = facet_of(scene, points.triangle[i], points.flipped[i] != 0);
-    const Lookups::Answer answer = lookups.at(facet, exact_position(scene, points, i), bias_, filter_);
+    const Scene& scene       = aimed.scene();
+    const PointBatch& points = looked.points;
+    const Lookups lookups    = look_up(aimed, looked, i);
+    FacetOfPoint at{scene, points};
+    const dvec3 p                = at.go_to(i);
+    const Lookups::Answer answer = lookups.at(at.facet, p, bias_, filter_);
     TriangleId blocker           = kNoTriangle;
     for (const auto& asked : {answer.first, answer.second}) {
         if (!asked || given.s >= 1 || blocker != kNoTriangle) continue;

@@ -206,8 +206,9 @@ public:
     [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override {
         const PointBatch& points = looked.points;
         const auto& of           = as<FilteredViews>(aimed);
-        const Facet facet        = facet_of(of.scene(), points.triangle[i], points.flipped[i] != 0);
-        const auto found   = receive(of.views(), facet, exact_position(of.scene(), points, i), bias_, compared(of));
+        FacetOfPoint at{of.scene(), points};
+        const dvec3 p      = at.go_to(i);
+        const auto found   = receive(of.views(), at.facet, p, bias_, compared(of));
         TriangleId blocker = kNoTriangle;
         if (found && given.answer == Answer::given && given.s < 1) {
             Receiver biased = found->receiver;

@@ -18,14 +18,6 @@
 
 namespace umbra {
 
-/// Triangle `t`, its normal on the side of its corners' order, or on the other where `flipped`.
-[[nodiscard]] inline Facet facet_of(const Scene& scene, TriangleId t, bool flipped) {
-    const dvec3 a(scene.vertex(t, 0));
-    Facet facet{a, dvec3(scene.vertex(t, 1)) - a, dvec3(scene.vertex(t, 2)) - a, {}};
-    facet.normal = glm::normalize(glm::cross(facet.ab, facet.ac)) * (flipped ? -1.0 : 1.0);
-    return facet;
-}
-
 /// The triangles of one point after the other: neighbours are mostly on one.
 struct FacetOfPoint {
     const Scene& scene;
@@ -39,7 +31,9 @@ struct FacetOfPoint {
         if (points.triangle[i] != triangle || (points.flipped[i] != 0) != flipped) {
             triangle = points.triangle[i];
             flipped  = points.flipped[i] != 0;
-            facet    = facet_of(scene, triangle, flipped);
+            const dvec3 a(scene.vertex(triangle, 0));
+            facet        = {a, dvec3(scene.vertex(triangle, 1)) - a, dvec3(scene.vertex(triangle, 2)) - a, {}};
+            facet.normal = glm::normalize(glm::cross(facet.ab, facet.ac)) * (flipped ? -1.0 : 1.0);
         }
         return facet.a + static_cast<double>(points.u[i]) * facet.ab + static_cast<double>(points.v[i]) * facet.ac;
     }

@@ -195,9 +195,9 @@ public:
     [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override {
         const PointBatch& points = looked.points;
         const auto& views        = as<LightViews>(aimed);
-        const Facet facet        = facet_of(aimed.scene(), points.triangle[i], points.flipped[i] != 0);
-        const dvec3 p            = exact_position(aimed.scene(), points, i);
-        const auto found         = receive(views.views(), facet, p, bias_, filter_);
+        FacetOfPoint of{aimed.scene(), points};
+        const dvec3 p    = of.go_to(i);
+        const auto found = receive(views.views(), of.facet, p, bias_, filter_);
         std::optional<ivec2> sample;
         if (found && given.answer == Answer::given && given.s < 1)
             sample =
