@@ -7,7 +7,6 @@
 #include <mutex>
 #include <optional>
 
-#include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/shadows/bins/point_bins.h"
 #include "umbra/shadows/bins/shadow_planes.h"

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "umbra/core/base/lanes.h"
-#include "umbra/core/base/parallel.h"
 
 namespace umbra::rays {
 
