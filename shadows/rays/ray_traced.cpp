@@ -206,17 +206,15 @@ private:
         const bool has_shafts = traced.shafts && options.offset == OffsetPolicy::skip_triangle;
         see_known(has_shafts ? &*traced.shafts : nullptr, places, points, traced.light, tile, s,
                   [&](std::size_t first, std::size_t count, const Starts& starts) {
-                      for (std::size_t k = 0; k < count; ++k)
-                          if (points.asks(traced.light, first + k))
-                              s[first + k] = visible_fraction(traced, starts, static_cast<int>(k),
-                                                              traced.rays.samples().key(points.number(first + k)));
+                      for (std::size_t k = 0; k < count; ++k) {
+                          if (!points.asks(traced.light, first + k)) continue;
+                          const auto lane    = static_cast<int>(k);
+                          const PointKey key = traced.rays.samples().key(points.number(first + k));
+                          s[first + k]       = options.measure == Measure::irradiance
+                                                   ? visible_irradiance(traced, starts, lane, key)
+                                                   : traced.rays.visible_fraction(starts, lane, key);
+                      }
                   });
-    }
-
-    [[nodiscard]] float visible_fraction(const TracedLight& traced, const Starts& starts, int lane,
-                                         PointKey key) const {
-        return options.measure == Measure::irradiance ? visible_irradiance(traced, starts, lane, key)
-                                                      : traced.rays.visible_fraction(starts, lane, key);
     }
 
     /// The fraction of the light's irradiance that arrives at the point. Towards a flat light the cosine at the light
