@@ -1,5 +1,5 @@
-// Geometry that several rooms need: axes across a direction, an order of positions, distances to segments and triangles. All
-// in double.
+// Geometry that several rooms need: axes across a direction, an order of positions, faces of a cube, distances to
+// segments and triangles. All in double.
 #pragma once
 
 #include <algorithm>
@@ -25,6 +25,13 @@ struct Axes {
 /// Whether a is before b in the order by x, y and z. Both triangles of an edge take its ends in that order, so that
 /// both compute the same numbers.
 [[nodiscard]] inline bool comes_before(dvec3 a, dvec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
+
+/// A direction as face 0 to 5 of a cube has it: x, y and the depth along the face's axis. It leads through the face
+/// where |x|, |y| <= depth. Exact.
+[[nodiscard]] inline dvec3 in_cube_face(int face, dvec3 d) {
+    const int axis = face / 2;
+    return {d[(axis + 1) % 3], d[(axis + 2) % 3], face % 2 == 0 ? d[axis] : -d[axis]};
+}
 
 /// Distance from p to the segment from a to b, which may be one point.
 [[nodiscard]] inline double distance_to_segment(dvec3 p, dvec3 a, dvec3 b) {

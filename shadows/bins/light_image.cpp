@@ -62,15 +62,9 @@ LightImage::LightImage(const Light& light, dvec3 centre, double reach)
     axes_              = {across, glm::cross(d, across), d};
 }
 
-dvec3 LightImage::in_face(int face, dvec3 p) const {
-    const dvec3 d = p - origin_;
-    const int k   = face / 2;
-    return {d[(k + 1) % 3], d[(k + 2) % 3], face % 2 == 0 ? d[k] : -d[k]};
-}
-
 std::optional<Extent> LightImage::extent(int face, const std::array<dvec3, 3>& corners) const {
     std::array<dvec3, 3> q;
-    for (std::size_t k = 0; k < 3; ++k) q[k] = in_face(face, corners[k]);
+    for (std::size_t k = 0; k < 3; ++k) q[k] = in_cube_face(face, corners[k] - origin_);
     if (q[0].z <= 0 && q[1].z <= 0 && q[2].z <= 0) return std::nullopt;  // signs of differences of floats are exact
     ClippedPolygon<dvec3, 8> outline{.corners = {q[0], q[1], q[2]}, .count = 3};
     const bool is_within =

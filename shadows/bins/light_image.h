@@ -104,8 +104,6 @@ public:
     void travel(const Corners& corners, Corners& to) const;
 
 private:
-    /// (x, y, w) of a face: the place is (x / w, y / w) from the face's middle.
-    [[nodiscard]] dvec3 in_face(int face, dvec3 p) const;
     [[nodiscard]] unsigned infinite_extents(const Corners& corners, Extents& to) const;
     [[nodiscard]] unsigned cube_extents(const Corners& corners, Extents& to) const;
 

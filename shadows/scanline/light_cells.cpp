@@ -9,13 +9,6 @@ namespace {
 
 constexpr double kWide = 1e-9;  ///< boxes are widened by far more than rounding, relative to a face
 
-/// A face of the cube as x, y and depth: the point is in its frustum where |x|, |y| <= depth.
-dvec3 in_face(int face, dvec3 p) {
-    const int axis     = face / 2;
-    const double depth = face % 2 == 0 ? p[axis] : -p[axis];
-    return {p[(axis + 1) % 3], p[(axis + 2) % 3], depth};
-}
-
 std::size_t cells_along(const Scene& scene, int faces) {
     const double wanted = std::sqrt(static_cast<double>(scene.triangles.size()) / faces);
     return static_cast<std::size_t>(std::clamp(2 * wanted, 8.0, 1024.0));
@@ -64,7 +57,7 @@ dvec3 LightCells::seen(dvec3 p) const {
 template <std::size_t N>
 std::optional<LightCells::Coverage> LightCells::outline(int face, const std::array<dvec3, N>& corners) const {
     ClippedPolygon<dvec3, N + 4> part;
-    for (const dvec3& corner : corners) part.add(infinite_ ? corner : in_face(face, corner));
+    for (const dvec3& corner : corners) part.add(infinite_ ? corner : in_cube_face(face, corner));
     if (!infinite_) {
         const auto cut = [&](const auto& side) { part.template cut<CutFrom::first>(side, N == 2); };
         cut([](dvec3 p) { return p.z * (1 + kWide) - p.x; });
