@@ -173,6 +173,15 @@ public:
     [[nodiscard]] virtual Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const;
 
 protected:
+    /// For `visibility`: body(i) for the points that ask for the light, of about `grain` points in a row. Parallel.
+    template <class Body>
+    static void for_each_asked(const Aimed& aimed, const Looked& looked, std::size_t grain, const Body& body) {
+        parallel_ranges(looked.points.size(), grain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                if (looked.points.asks(aimed.light, i)) body(i);
+        });
+    }
+
     /// For `blame`: find(i) for the points that ask for the light, kNoTriangle for others. Parallel.
     template <class Find>
     static void blame_each(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers, const Find& find) {

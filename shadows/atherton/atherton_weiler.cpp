@@ -206,20 +206,17 @@ public:
         using Seen               = LitPolygons::Seen;
         const auto& polygons     = as<LitPolygons>(aimed);
         const PointBatch& points = looked.points;
-        parallel_ranges(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                if (!points.asks(aimed.light, i)) continue;
-                const TriangleId t = points.triangle[i];
-                switch (polygons.seen(t)) {
-                    case Seen::unknown: out.answer[i] = Answer::undefined; break;
-                    case Seen::lit: out.s[i] = 1; break;
-                    case Seen::umbra: out.s[i] = 0; break;
-                    case Seen::parts: {
-                        const LitPart::At at = polygons.part(t).at(points.u[i], points.v[i]);
-                        out.s[i]             = at == LitPart::At::umbra ? 0.0f : 1.0f;
-                        if (at == LitPart::At::boundary) out.answer[i] = Answer::on_boundary;
-                        break;
-                    }
+        for_each_asked(aimed, looked, 1024, [&](std::size_t i) {
+            const TriangleId t = points.triangle[i];
+            switch (polygons.seen(t)) {
+                case Seen::unknown: out.answer[i] = Answer::undefined; break;
+                case Seen::lit: out.s[i] = 1; break;
+                case Seen::umbra: out.s[i] = 0; break;
+                case Seen::parts: {
+                    const LitPart::At at = polygons.part(t).at(points.u[i], points.v[i]);
+                    out.s[i]             = at == LitPart::At::umbra ? 0.0f : 1.0f;
+                    if (at == LitPart::At::boundary) out.answer[i] = Answer::on_boundary;
+                    break;
                 }
             }
         });

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "umbra/core/base/geometry.h"
-#include "umbra/core/base/parallel.h"
 #include "umbra/core/base/rounding.h"
 #include "umbra/core/render/facing.h"
 #include "umbra/core/render/light_points.h"
@@ -115,21 +114,18 @@ public:
         const Light& light       = aimed.source();
         const int samples        = samples_of(light);
         const bool one_answer    = !is_area(light.kind) && aimed.scene().transparent != TransparentOccluders::multiply;
-        parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                if (!points.asks(aimed.light, i)) continue;
-                vec3 sum(0);
-                bool is_open = false;
-                for (int k = 0; k < samples; ++k) {
-                    const Segment s = segment(aimed, points, i, k);
-                    if (!s.behind) sum += passed(aimed, s, is_open);
-                }
-                sum /= static_cast<float>(samples);
-                if (is_open && one_answer)
-                    sum = vec3(as<Occluders>(aimed.built).sight.is_lit(points, i, light) ? 1.0f : 0.0f);
-                out.s[i] = mean_of(sum);
-                if (!out.colour.empty()) out.colour[i] = sum;
+        for_each_asked(aimed, looked, 64, [&](std::size_t i) {
+            vec3 sum(0);
+            bool is_open = false;
+            for (int k = 0; k < samples; ++k) {
+                const Segment s = segment(aimed, points, i, k);
+                if (!s.behind) sum += passed(aimed, s, is_open);
             }
+            sum /= static_cast<float>(samples);
+            if (is_open && one_answer)
+                sum = vec3(as<Occluders>(aimed.built).sight.is_lit(points, i, light) ? 1.0f : 0.0f);
+            out.s[i] = mean_of(sum);
+            if (!out.colour.empty()) out.colour[i] = sum;
         });
     }
 

@@ -106,12 +106,9 @@ public:
         const auto& light        = as<RadiosityElements>(aimed);
         const PointBatch& points = looked.points;
         const bool linear        = options.interpolation == Interpolation::linear;
-        parallel_ranges(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                if (!points.asks(aimed.light, i)) continue;
-                const InPatch at = light.surfaces.find(points, i);
-                out.s[i]         = light.sides[points.flipped[i]][at.patch].at(at.u, at.v, linear);
-            }
+        for_each_asked(aimed, looked, 4096, [&](std::size_t i) {
+            const InPatch at = light.surfaces.find(points, i);
+            out.s[i]         = light.sides[points.flipped[i]][at.patch].at(at.u, at.v, linear);
         });
     }
 
