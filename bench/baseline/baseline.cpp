@@ -6,7 +6,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "umbra/bench/record/json.h"
+#include "umbra/bench/record/field.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {

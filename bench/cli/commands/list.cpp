@@ -14,7 +14,7 @@
 #include "umbra/bench/motion/motion_record.h"
 #include "umbra/bench/recommend/recommendation_record.h"
 #include "umbra/bench/run/results.h"
-#include "umbra/bench/studies/bias/bias_record.h"
+#include "umbra/bench/studies/bias/bias_study.h"
 #include "umbra/bench/studies/brdf/brdf_table.h"
 #include "umbra/bench/studies/radiosity/light_exchange.h"
 #include "umbra/bench/studies/shading/shading_choice.h"
