@@ -1,11 +1,14 @@
 // What the files of the command line share: exit codes, options of all commands, the table of commands.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <span>
 #include <string>
 #include <string_view>
+
+namespace CLI {
+class App;
+}
 
 namespace umbra {
 
