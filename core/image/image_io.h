@@ -21,8 +21,8 @@ struct LoadedImage {
     std::map<std::string, std::string> shown_as{};
 };
 
-/// Begins to load OpenImageIO on a thread of its own, so that the 0.4 s pass beside other work. Ready at once where it is
-/// loaded; the destructor waits. What fails here is thrown by the first function that needs it.
+/// Begins to load OpenImageIO on a thread of its own, so that the 0.4 s pass beside other work; soon ready where it is
+/// loaded. The destructor waits. A failure is thrown by the first function that needs the library.
 [[nodiscard]] std::future<void> load_image_library();
 
 /// Why pixels of the two do not belong together: sizes, windows, and the files' statements about showing them.
