@@ -36,9 +36,8 @@ std::optional<double> left_out(const SweptScene& scene, const std::string& metri
     for (std::size_t m = 0; m < scene.metrics.size(); ++m)
         for (const SweptSetting& s : scene.settings) {
             const bool within =
-                scene.metrics[m].name == metric && s.method == method && s.errors[m] && s.errors[m]->worst <= error;
-            if (within && !s.excluded.empty() && s.coverage && *s.coverage < 1)
-                most = std::max(most.value_or(0), *s.coverage);
+                scene.metrics[m].name == metric && s.name == method && s.errors[m] && s.errors[m]->worst <= error;
+            if (within && s.excluded && s.coverage && *s.coverage < 1) most = std::max(most.value_or(0), *s.coverage);
         }
     return most;
 }

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/statistics/statistics.h"
-#include "umbra/bench/trade/sweep_results.h"
 
 namespace umbra {
 namespace {
@@ -83,34 +83,28 @@ std::optional<FrameCost> cost_of(const Workload& workload, const SweptSettingRec
     return cost;
 }
 
-SweptSetting setting_of(const SweptScene& scene, const SweptSettingRecord& record) {
-    SweptSetting s;
-    s.text           = record.text;
-    s.method         = record.name;
-    s.title          = record.title.empty() ? in_words(s.method) : record.title;
+SweptSetting setting_of(const SweptScene& scene, SweptSettingRecord record) {
+    SweptSetting s{std::move(record)};
+    if (s.title.empty()) s.title = in_words(s.name);
+    if (s.excluded == "") s.excluded.reset();
     const auto colon = s.text.find(':');
     s.label          = colon == std::string::npos ? "defaults" : s.text.substr(colon + 1);
-    s.preset         = record.preset.value_or("");
-    s.failed         = record.failed.has_value();
-    s.excluded       = record.excluded.value_or("");
     if (s.failed)
-        s.note = "failed: " + record.failed->message;
-    else if (record.serves.how == "not")
-        s.note = "not served: " + record.serves.why;
-    if (s.note.empty()) s.cost = cost_of(scene.workload, record);
-    if (record.memory_bytes) s.memory_bytes = double(*record.memory_bytes);
-    s.coverage = record.coverage;
+        s.note = "failed: " + s.failed->message;
+    else if (s.serves.how == "not")
+        s.note = "not served: " + s.serves.why;
+    if (s.note.empty()) s.cost = cost_of(scene.workload, s);
     for (const SweptMetric& metric : scene.metrics)
-        s.errors.push_back(s.note.empty() ? error_of(record, metric.name) : std::nullopt);
+        s.errors.push_back(s.note.empty() ? error_of(s, metric.name) : std::nullopt);
     return s;
 }
 
 }  // namespace
 
 SweptScene read_swept_scene(const std::filesystem::path& file) {
-    const Field root           = read_results(file);
-    const SweepResults results = from_record<SweepResults>(root);
-    const SweepRecord& sweep   = results.sweep;
+    const Field root     = read_results(file);
+    SweepResults results = from_record<SweepResults>(root);
+    SweepRecord& sweep   = results.sweep;
     SweptScene scene{.head      = results.head,
                      .machine   = results.machine,
                      .file      = file,
@@ -124,20 +118,19 @@ SweptScene read_swept_scene(const std::filesystem::path& file) {
     if (!(scene.workload.camera + scene.workload.light + scene.workload.object > 0))
         root["sweep"]["workload"].refuse("something that moves");
     scene.metrics = shown_metrics(sweep);
-    for (const SweptSettingRecord& setting : sweep.settings) scene.settings.push_back(setting_of(scene, setting));
+    for (SweptSettingRecord& setting : sweep.settings) scene.settings.push_back(setting_of(scene, std::move(setting)));
     return scene;
 }
 
 bool is_timed_on(const SweptScene& scene, const SweptMethod& method) {
-    return std::ranges::any_of(scene.settings,
-                               [&](const SweptSetting& s) { return s.method == method.name && s.cost; });
+    return std::ranges::any_of(scene.settings, [&](const SweptSetting& s) { return s.name == method.name && s.cost; });
 }
 
 std::vector<SweptMethod> swept_methods(const std::vector<SweptScene>& scenes) {
     std::vector<SweptMethod> methods;
     for (const SweptScene& scene : scenes)
         for (const SweptSetting& s : scene.settings)
-            if (index_of(methods, s.method) == methods.size()) methods.push_back({s.method, s.title});
+            if (index_of(methods, s.name) == methods.size()) methods.push_back({s.name, s.title});
     const auto scenes_of = [&](const SweptMethod& m) {
         return std::ranges::count_if(scenes, [&](const SweptScene& scene) { return is_timed_on(scene, m); });
     };

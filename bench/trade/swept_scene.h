@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/run/describe.h"
-#include "umbra/bench/time/workload.h"
+#include "umbra/bench/trade/sweep_results.h"
 
 namespace umbra {
 
@@ -30,18 +29,12 @@ struct SweptError {
     bool at_least = false;          ///< in a view it may be more than is known: `worst` is the least that it may be
 };
 
-struct SweptSetting {
-    std::string text;    ///< as typed: "shadow_zbuffer:resolution=512"
-    std::string method;  ///< its name, as typed
-    std::string title;   ///< of the method
-    std::string label;   ///< what differs from the defaults: "resolution=512", or "defaults"
-    std::string preset;  ///< empty where it is none
-    std::string note;    ///< why it has no figures: not served, or it failed; empty where it has
-    bool failed = false;
+/// A setting's record, where `title` and a reason in `excluded` are never empty, and what follows from it.
+struct SweptSetting : SweptSettingRecord {
+    std::string label{};              ///< what differs from the defaults: "resolution=512", or "defaults"
+    std::string note{};               ///< why it has no figures: not served, or it failed; empty where it has
     std::optional<FrameCost> cost{};  ///< nothing where it was not timed
-    std::optional<double> memory_bytes{}, coverage{};
     std::vector<std::optional<SweptError>> errors{};  ///< [metric]
-    std::string excluded;                             ///< why it is on no front; empty where it may be
 };
 
 struct SweptScene {

@@ -40,7 +40,7 @@ json plot_view(const SweptScene& scene, const std::vector<SweptMethod>& methods,
         const SweptError& e = *s.errors[metric];
         errs                = errs || e.worst > 0;
         points.push_back({fmt::format("{}: {} ms, {}", s.text, milliseconds(s.cost->median), worst_in_words(e)),
-                          *s.cost, e, index_of(methods, s.method), number_on(front, i)});
+                          *s.cost, e, index_of(methods, s.name), number_on(front, i)});
     }
     const SweptMetric& m = scene.metrics[metric];
     json view            = {{"title", m.title},
@@ -55,7 +55,7 @@ json plot_view(const SweptScene& scene, const std::vector<SweptMethod>& methods,
         const SweptSetting& s = scene.settings[i];
         view["steps"].push_back({{"title", s.title},
                                  {"label", s.label},
-                                 {"colour", std::to_string(mark_style(index_of(methods, s.method)).colour)},
+                                 {"colour", std::to_string(mark_style(index_of(methods, s.name)).colour)},
                                  {"error", worst_in_words(*s.errors[metric])},
                                  {"ms", milliseconds(s.cost->median)}});
     }
@@ -76,18 +76,18 @@ json legend_of(const SweptScene& scene, const std::vector<SweptMethod>& methods)
 json row_view(const SweptScene& scene, const std::vector<SweptMethod>& methods, std::size_t i,
               const std::vector<std::vector<std::size_t>>& fronts) {
     const SweptSetting& s = scene.settings[i];
-    const std::size_t k   = index_of(methods, s.method);
+    const std::size_t k   = index_of(methods, s.name);
     json row              = {{"text", s.text},
-                             {"preset", s.preset},
+                             {"preset", s.preset.value_or("")},
                              {"colour", std::to_string(mark_style(k).colour)},
                              {"key", chart::mark_path(k, 14, 9)},
-                             {"note", s.note.empty() ? s.excluded : s.note},
-                             {"failed", s.failed},
+                             {"note", s.note.empty() ? s.excluded.value_or("") : s.note},
+                             {"failed", s.failed.has_value()},
                              {"cost", s.cost ? milliseconds(s.cost->median) : kNone},
                              {"range", s.cost && s.cost->low < s.cost->high ? range(s.cost->low, s.cost->high) : ""},
                              {"memory", mebibytes(s.memory_bytes)},
                              {"coverage", percent(s.coverage)},
-                             {"partial", s.note.empty() && !s.excluded.empty()},
+                             {"partial", s.note.empty() && s.excluded},
                              {"errors", json::array()}};
     for (std::size_t m = 0; m < scene.metrics.size(); ++m) {
         const auto& e            = s.errors[m];

@@ -27,7 +27,7 @@ struct Flight {
 void add_as_cheap(const SweptScene& scene, std::size_t metric, std::size_t i, std::vector<std::string>& titles) {
     const SweptSetting& step = scene.settings[i];
     for (const SweptSetting& s : scene.settings) {
-        if (s.method == step.method || !takes_part(s, metric)) continue;
+        if (s.name == step.name || !takes_part(s, metric)) continue;
         if (s.errors[metric]->worst > step.errors[metric]->worst ||
             costs_more(scene, s.cost->median, step.cost->median))
             continue;
@@ -41,7 +41,7 @@ std::optional<std::size_t> cheapest_within(const SweptScene& scene, std::size_t 
     std::optional<std::size_t> cheapest;
     for (std::size_t i = 0; i < scene.settings.size(); ++i) {
         const SweptSetting& s = scene.settings[i];
-        if (s.method != method || !takes_part(s, metric) || s.errors[metric]->worst > error) continue;
+        if (s.name != method || !takes_part(s, metric) || s.errors[metric]->worst > error) continue;
         if (!cheapest || s.cost->median < scene.settings[*cheapest].cost->median) cheapest = i;
     }
     return cheapest;
@@ -53,7 +53,7 @@ std::string as_cheap_in_words(const std::vector<std::string>& titles) {
 
 }  // namespace
 
-bool takes_part(const SweptSetting& s, std::size_t metric) { return s.cost && s.errors[metric] && s.excluded.empty(); }
+bool takes_part(const SweptSetting& s, std::size_t metric) { return s.cost && s.errors[metric] && !s.excluded; }
 
 bool is_loud(const SweptScene& scene) { return is_too_noisy(scene.noise_bar.value_or(0)); }
 
