@@ -1,5 +1,7 @@
 #include "umbra/bench/motion/growth_record.h"
 
+#include <cmath>
+
 namespace umbra {
 namespace {
 
@@ -19,15 +21,15 @@ QuantityRecord quantity_record(const GrowthRun& run, const GrowthSeries& series,
     QuantityRecord record{.quantity = std::string(to_string(quantity))};
     const auto fit = fit_growth(series, quantity);
     if (fit)
-        record.fit = {.exponent  = fit->law.exponent,
-                      .interval  = ends(fit->law.exponent_interval),
-                      .factor    = fit->law.factor,
-                      .r_squared = fit->law.r_squared,
-                      .points    = static_cast<std::uint64_t>(fit->law.points),
-                      .range     = {fit->from, fit->to}};
+        record.fit = {.exponent  = fit->exponent,
+                      .interval  = ends(fit->exponent_interval),
+                      .factor    = fit->factor,
+                      .r_squared = fit->r_squared,
+                      .points    = static_cast<std::uint64_t>(fit->points),
+                      .range     = ends(fit->range)};
     if (const auto theory = growth_theory(run.family->name, series.choice.info->name, quantity)) {
         record.theory = TheoryRecord{.interval = ends(theory->exponent), .why = std::string(theory->why)};
-        if (fit) record.verdict = compare_with_theory(fit->law.exponent_interval, *theory);
+        if (fit) record.verdict = compare_with_theory(fit->exponent_interval, *theory);
     }
     return record;
 }
@@ -55,7 +57,7 @@ std::optional<FittedCrossingRecord> fitted_crossing(const GrowthRun& run, const 
                                                     Quantity quantity) {
     const auto fit_a = fit_growth(a, quantity), fit_b = fit_growth(b, quantity);
     if (!fit_a || !fit_b) return std::nullopt;
-    const auto found = crossing(fit_a->law, fit_b->law);
+    const auto found = crossing(*fit_a, *fit_b);
     if (!found) return std::nullopt;
     const bool inside = found->x >= run.sizes.front() && found->x <= run.sizes.back();
     return FittedCrossingRecord{.x = found->x, .interval = ends(found->interval), .inside = inside};
@@ -66,14 +68,9 @@ std::vector<CrossingRecord> crossing_records(const GrowthRun& run) {
     for (std::size_t a = 0; a < run.series.size(); ++a)
         for (std::size_t b = a + 1; b < run.series.size(); ++b)
             for (const Quantity quantity : {Quantity::camera_frame, Quantity::light_frame, Quantity::object_frame})
-                for (const MeasuredCrossing& c : measured_crossings(run.series[a], run.series[b], quantity)) {
-                    const std::string first = run.series[a].choice.text(), second = run.series[b].choice.text();
-                    records.push_back({.quantity = std::string(to_string(quantity)),
-                                       .below    = c.first_is_faster_below ? first : second,
-                                       .above    = c.first_is_faster_below ? second : first,
-                                       .x        = c.x,
-                                       .between  = ends(c.between),
-                                       .fitted   = fitted_crossing(run, run.series[a], run.series[b], quantity)});
+                for (CrossingRecord& c : measured_crossings(run.series[a], run.series[b], quantity)) {
+                    c.fitted = fitted_crossing(run, run.series[a], run.series[b], quantity);
+                    records.push_back(std::move(c));
                 }
     return records;
 }
@@ -102,8 +99,8 @@ std::optional<ExternalRecord> external_record(const GrowthRun& run) {
                                    .interval = ratio.has_interval() ? ends(ratio.interval) : none,
                                    .coverage = ratio.coverage});
         }
-    for (const MeasuredCrossing& c : measured_crossings(*silhouettes, *triangles, Quantity::light_frame))
-        record.our_crossings.push_back(ends(c.between));
+    for (const CrossingRecord& c : measured_crossings(*silhouettes, *triangles, Quantity::light_frame))
+        record.our_crossings.push_back(c.between);
     return record;
 }
 
@@ -113,6 +110,32 @@ Allowed quantities() {
     Allowed allowed;
     for (const Quantity quantity : kQuantities) allowed.words.push_back(to_string(quantity));
     return allowed;
+}
+
+std::vector<CrossingRecord> measured_crossings(const GrowthSeries& a, const GrowthSeries& b, Quantity quantity) {
+    struct Decided {
+        double x, log_ratio;
+    };
+    std::optional<Decided> before;
+    std::vector<CrossingRecord> found;
+    for (const GrowthPoint& p : a.points)
+        for (const GrowthPoint& q : b.points) {
+            if (p.x != q.x) continue;
+            const Ratio ratio = paired_ratio(GrowthSeries::rounds(p, quantity), GrowthSeries::rounds(q, quantity));
+            if (ratio.pairs == 0 || !differs(ratio, p.noise_bar)) continue;
+            const Decided now{p.x, std::log(ratio.median)};
+            if (before && (before->log_ratio < 0) != (now.log_ratio < 0)) {
+                const double t     = before->log_ratio / (before->log_ratio - now.log_ratio);
+                const bool a_below = before->log_ratio < 0;
+                found.push_back({.quantity = std::string(to_string(quantity)),
+                                 .below    = (a_below ? a : b).choice.text(),
+                                 .above    = (a_below ? b : a).choice.text(),
+                                 .x        = before->x * std::pow(now.x / before->x, t),
+                                 .between  = {before->x, now.x}});
+            }
+            before = now;
+        }
+    return found;
 }
 
 FamilyRecord family_record(const GrowthRun& run) {

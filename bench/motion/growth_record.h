@@ -90,9 +90,10 @@ DESCRIBE(FittedCrossingRecord) {
     of(MEMBER(inside), "within the sizes that were measured");
 }
 
+/// Between two neighbouring sizes at which the paired ratios of times differ from 1, one way and then the other.
 struct CrossingRecord {
     std::string quantity{}, below{}, above{};
-    double x = kUnknown;
+    double x = kUnknown;  ///< where the line through the logarithms of the two ratios is 1
     std::vector<double> between{};
     std::optional<FittedCrossingRecord> fitted{};
 };
@@ -165,6 +166,9 @@ DESCRIBE(GrowthRecord) {
     MEMBERS(failed);
 }
 
+/// Crossings between sizes that both have, without `fitted`; sizes at which there is no difference count for neither.
+[[nodiscard]] std::vector<CrossingRecord> measured_crossings(const GrowthSeries& a, const GrowthSeries& b,
+                                                             Quantity quantity);
 [[nodiscard]] FamilyRecord family_record(const GrowthRun& run);
 [[nodiscard]] Json growth_schema();  ///< JSON Schema, draft 4
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "umbra/core/base/error.h"
 
@@ -84,7 +83,7 @@ GrowthRun run_growth(const GrowthFamily& family, const std::vector<MethodChoice>
     return run;
 }
 
-std::optional<GrowthFit> fit_growth(const GrowthSeries& series, Quantity quantity) {
+std::optional<PowerLaw> fit_growth(const GrowthSeries& series, Quantity quantity) {
     std::vector<double> x, y;
     const double largest = series.points.empty() ? 0 : series.points.back().x;
     for (const GrowthPoint& point : series.points) {
@@ -94,29 +93,7 @@ std::optional<GrowthFit> fit_growth(const GrowthSeries& series, Quantity quantit
         y.push_back(*value);
     }
     if (x.size() < 3) return std::nullopt;
-    return GrowthFit{fit_power_law(x, y), x.front(), x.back()};
-}
-
-std::vector<MeasuredCrossing> measured_crossings(const GrowthSeries& a, const GrowthSeries& b, Quantity quantity) {
-    struct Decided {
-        double x, log_ratio;
-    };
-    std::optional<Decided> before;
-    std::vector<MeasuredCrossing> found;
-    for (const GrowthPoint& p : a.points)
-        for (const GrowthPoint& q : b.points) {
-            if (p.x != q.x) continue;
-            const Ratio ratio = paired_ratio(GrowthSeries::rounds(p, quantity), GrowthSeries::rounds(q, quantity));
-            if (ratio.pairs == 0 || !differs(ratio, p.noise_bar)) continue;
-            const Decided now{p.x, std::log(ratio.median)};
-            if (before && (before->log_ratio < 0) != (now.log_ratio < 0)) {
-                const double t = before->log_ratio / (before->log_ratio - now.log_ratio);
-                found.push_back(
-                    {before->x * std::pow(now.x / before->x, t), {before->x, now.x}, before->log_ratio < 0});
-            }
-            before = now;
-        }
-    return found;
+    return fit_power_law(x, y);
 }
 
 }  // namespace umbra

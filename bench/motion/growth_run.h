@@ -48,23 +48,9 @@ struct GrowthRun {
 
 /// A power law through the least times of the rounds, which other programs on the machine distort least, at the largest
 /// sizes: those from a hundredth of the largest on, where the time is at least kShortest; memory likewise, in bytes.
-struct GrowthFit {
-    PowerLaw law;
-    double from = 0, to = 0;
-};
+/// Nothing for fewer than three points.
+[[nodiscard]] std::optional<PowerLaw> fit_growth(const GrowthSeries& series, Quantity quantity);
 /// Below this, milliseconds, clocks and waking threads are measured.
 inline constexpr double kShortest = 0.05;
-/// Nothing for fewer than three points.
-[[nodiscard]] std::optional<GrowthFit> fit_growth(const GrowthSeries& series, Quantity quantity);
-
-/// Between two neighbouring sizes at which the paired ratios of times differ from 1, one way and then the other.
-struct MeasuredCrossing {
-    double x = 0;      ///< where the line through the logarithms of the two ratios is 1
-    Interval between;  ///< those two sizes
-    bool first_is_faster_below = false;
-};
-/// Of the sizes that both have; those at which there is no difference count for neither.
-[[nodiscard]] std::vector<MeasuredCrossing> measured_crossings(const GrowthSeries& a, const GrowthSeries& b,
-                                                               Quantity quantity);
 
 }  // namespace umbra

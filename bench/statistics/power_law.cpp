@@ -50,6 +50,7 @@ PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y) {
 
     PowerLaw law;
     law.points       = static_cast<int>(u.size());
+    law.range        = {std::ranges::min(x), std::ranges::max(x)};
     law.exponent     = uv / uu;
     law.factor       = std::exp(v_mean - law.exponent * u_mean);
     law.log_x_mean   = u_mean;

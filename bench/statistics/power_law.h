@@ -14,6 +14,7 @@ struct PowerLaw {
     Interval exponent_interval;
     double r_squared = 0;  ///< of the logarithms, [0, 1]; 1 where all y are equal, as the line then holds exactly
     int points       = 0;
+    Interval range;  ///< of x
 
     // What `crossing` needs of the fit: mean and sum of squared deviations of log x, variance of the residuals.
     double log_x_mean = 0, log_x_spread = 0, residual_variance = 0;

@@ -142,12 +142,12 @@ TEST_F(PlantedGrowth, ExponentsAreFound) {
     const GrowthRun run = run_growth(kPlanted, choices(), 65536, options_);
     EXPECT_EQ(run.sizes, (std::vector<double>{256, 1024, 4096, 16384, 65536}));
     const auto exponent = [&](std::size_t series, Quantity quantity) {
-        const std::optional<GrowthFit> fit = fit_growth(run.series[series], quantity);
+        const std::optional<PowerLaw> fit = fit_growth(run.series[series], quantity);
         EXPECT_TRUE(fit.has_value());
-        EXPECT_EQ(fit->from, 1024) << "256 is less than a hundredth of the largest";
-        EXPECT_EQ(fit->to, 65536);
-        EXPECT_EQ(fit->law.points, 4);
-        return fit->law.exponent;
+        EXPECT_EQ(fit->range.low, 1024) << "256 is less than a hundredth of the largest";
+        EXPECT_EQ(fit->range.high, 65536);
+        EXPECT_EQ(fit->points, 4);
+        return fit->exponent;
     };
     EXPECT_NEAR(exponent(0, Quantity::build), 1, 1e-6);
     EXPECT_NEAR(exponent(0, Quantity::aim), 0, 1e-6);
@@ -161,10 +161,10 @@ TEST_F(PlantedGrowth, CrossingsLieBetweenTheSizesAroundThem) {
     const auto found    = measured_crossings(run.series[0], run.series[1], Quantity::camera_frame);
     ASSERT_EQ(found.size(), 1u);
     // They are equal at 4096, which counts for neither.
-    EXPECT_EQ(found[0].between.low, 1024);
-    EXPECT_EQ(found[0].between.high, 16384);
+    EXPECT_EQ(found[0].between, (std::vector<double>{1024, 16384}));
     EXPECT_NEAR(found[0].x, 4096, 1e-6);
-    EXPECT_FALSE(found[0].first_is_faster_below) << "x^0.5 is more below";
+    EXPECT_EQ(found[0].below, "planted:seed=1") << "x^0.5 is more below";
+    EXPECT_EQ(found[0].above, "planted");
     EXPECT_TRUE(measured_crossings(run.series[0], run.series[0], Quantity::camera_frame).empty());
     const Json json = to_record(family_record(run));
     ASSERT_FALSE(json["crossings"].empty());
