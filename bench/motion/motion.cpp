@@ -46,7 +46,7 @@ MotionRecord measure_motion(const std::vector<std::filesystem::path>& files, con
             const auto chosen        = methods_on(prepared, file, command);
             const SceneMotion motion = run_motion(std::move(prepared), chosen, command.options);
             for (const MethodMotion& method : motion.methods)
-                if (method.failed) fail(motion.name, method.still.choice.text(), *method.failed);
+                if (method.failed) fail(name, method.still.choice.text(), *method.failed);
             record.motion.push_back(scene_motion_record(motion, command.max_rmse));
         } catch (const InputError& e) {
             unreadable.emplace_back(e.what());

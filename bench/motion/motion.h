@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/motion/motion_record.h"
+#include "umbra/bench/motion/motion_run.h"
 #include "umbra/bench/out/staged_files.h"
 
 namespace umbra {

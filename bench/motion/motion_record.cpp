@@ -21,7 +21,7 @@ MovedRecord moved_record(const SceneMotion& motion, const MethodMotion& method, 
                        .measured_over_model = sum / (model * n),
                        .frame_over_model = ratio_record(paired_ratio(times, std::vector<double>(times.size(), model)))};
     std::vector<double> rmse;
-    if (!motion.sampled) record.interior = 0;
+    if (!motion.record.reference.sampled) record.interior = 0;
     for (const MotionFrame& frame : record.frames) {
         if (frame.errors.points > 0) rmse.push_back(frame.errors.rmse);
         record.undefined += frame.errors.undefined;
@@ -68,19 +68,7 @@ std::optional<double> MovedRecord::answered() const {
 }
 
 SceneMotionRecord scene_motion_record(const SceneMotion& motion, double max_rmse) {
-    SceneMotionRecord record{
-        .scene     = motion.name,
-        .title     = motion.title,
-        .triangles = motion.triangles,
-        .size      = {static_cast<std::uint64_t>(motion.width), static_cast<std::uint64_t>(motion.height)},
-        .reference = {.method  = motion.reference->choice.text(),
-                      .exact   = motion.reference->exact,
-                      .note    = motion.reference->note,
-                      .sampled = motion.sampled},
-        .noise_bar = motion.noise_bar,
-        .movements = {motion.movements.begin(), motion.movements.end()}};
-    for (const Light& light : motion.lights)
-        record.lights.push_back({.name = light.name, .kind = std::string(to_string(light.kind))});
+    SceneMotionRecord record = motion.record;
     for (const MethodMotion& method : motion.methods) record.methods.push_back(method_record(motion, method));
     const std::vector<std::size_t> all = complete(motion), good = within(motion, max_rmse);
     for (const Mix& mix : canonical_mixes()) {

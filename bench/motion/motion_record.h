@@ -5,11 +5,29 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/motion/motion_run.h"
+#include "umbra/bench/motion/animation.h"
+#include "umbra/bench/motion/frame_errors.h"
 #include "umbra/bench/run/describe.h"
 #include "umbra/bench/statistics/statistics.h"
 
 namespace umbra {
+
+DESCRIBE(RunTimes) {
+    of("build_ms", &R::build, "0 where the movement does not repeat it", at_least(0));
+    of("aim_ms", &R::aim, "one a light");
+    of("look_ms", &R::look, "once for all lights; 0 where the movement does not repeat it", at_least(0));
+    of("visibility_ms", &R::visibility, "one a light");
+}
+
+struct MotionFrame {
+    RunTimes times{};
+    FrameErrors errors{};
+};
+DESCRIBE(MotionFrame) {
+    of.name("frame");
+    of.all(&R::times);
+    of.all(&R::errors);
+}
 
 /// Of paired times; `coverage` is 0, and the interval unknown, for fewer than six pairs.
 struct RatioRecord {
@@ -135,6 +153,20 @@ struct MovedLightRecord {
 };
 DESCRIBE(MovedLightRecord) { MEMBERS(name, kind); }
 
+/// One movement of the scene. What all methods share is no part of their times: medians over the frames, milliseconds.
+struct MovementRecord {
+    std::string movement{}, what{}, cannot{};  ///< as of Animation; `what` is empty where the scene cannot
+    double points_ms = kUnknown, facts_ms = kUnknown, truth_ms = kUnknown;
+};
+DESCRIBE(MovementRecord) {
+    of(MEMBER(movement), "", one_of({"camera", "light", "object"}));
+    of.may(MEMBER(what), "moves, in words");
+    of.may(MEMBER(cannot), "why the scene cannot have it; then there is nothing else");
+    of.may(MEMBER(points_ms), "new surface points, median of the frames; in no method's time", at_least(0));
+    of.may(MEMBER(facts_ms), "", at_least(0));
+    of.may(MEMBER(truth_ms), "", at_least(0));
+}
+
 struct SceneMotionRecord {
     std::string scene{}, title{};
     std::uint64_t triangles = 0;
@@ -180,6 +212,7 @@ DESCRIBE(MotionRecord) {
     MEMBERS(failed);
 }
 
+struct SceneMotion;
 [[nodiscard]] RatioRecord ratio_record(const Ratio& ratio);
 /// With the winners and break-even points of the scene.
 [[nodiscard]] SceneMotionRecord scene_motion_record(const SceneMotion& motion, double max_rmse);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <ranges>
 
+#include "umbra/bench/motion/kept_method.h"
 #include "umbra/bench/statistics/statistics.h"
 #include "umbra/bench/time/pinned_threads.h"
 #include "umbra/core/base/error.h"
@@ -36,16 +37,22 @@ public:
           scene_(std::move(prepared.scene)),
           facts_(std::move(prepared.facts)),
           points_(std::move(prepared.points)),
+          reference_(default_reference(facts_)),
           dice_(options.still.seed) {
-        result_.name      = scene_.name;
-        result_.title     = scene_.title;
-        result_.triangles = scene_.triangles.size();
-        result_.width     = points_.raster->width;
-        result_.height    = points_.raster->height;
-        result_.lights    = scene_.lights;
-        result_.reference = default_reference(facts_);
-        result_.sampled   = std::ranges::any_of(scene_.lights, [](const Light& l) { return is_area(l.kind); });
-        result_.noise_bar = turns_.noise_bar;
+        const bool sampled = std::ranges::any_of(scene_.lights, [](const Light& l) { return is_area(l.kind); });
+        result_.record     = {.scene     = scene_.name,
+                              .title     = scene_.title,
+                              .triangles = scene_.triangles.size(),
+                              .size      = {static_cast<std::uint64_t>(points_.raster->width),
+                                            static_cast<std::uint64_t>(points_.raster->height)},
+                              .reference = {.method  = reference_.choice.text(),
+                                            .exact   = reference_.exact,
+                                            .note    = reference_.note,
+                                            .sampled = sampled},
+                              .noise_bar = turns_.noise_bar,
+                              .movements = std::vector<MovementRecord>(kMovements.size())};
+        for (const Light& light : scene_.lights)
+            result_.record.lights.push_back({.name = light.name, .kind = std::string(to_string(light.kind))});
         for (TurnTimes& still : turns_.settings) {
             order_.push_back(order_.size());
             const bool runs = still.service && still.failed.empty();
@@ -82,7 +89,7 @@ private:
 
     void run_movement(Movement movement) {
         const Animation animation(scene_, facts_, movement);
-        MovementRecord& shared = result_.movements[static_cast<std::size_t>(movement)];
+        MovementRecord& shared = result_.record.movements[static_cast<std::size_t>(movement)];
         shared.movement        = to_string(movement);
         shared.cannot          = animation.cannot();
         if (!shared.cannot.empty()) return;
@@ -105,7 +112,7 @@ private:
             points_ms.push_back(timed_ms([&] { update_points(animation); }));
             std::optional<FrameTruth> truth;
             truth_ms.push_back(
-                timed_ms([&] { truth.emplace(*result_.reference, scene_, facts_, points_, options_.area_points); }));
+                timed_ms([&] { truth.emplace(reference_, scene_, facts_, points_, options_.area_points); }));
             in_turns(where, [&](std::size_t m) {
                 if (const Service service = kept_[m]->service(); !service)
                     throw MethodError("it does not serve the scene as it is here: " + service.why);
@@ -136,7 +143,7 @@ private:
             return;
         }
         if (animation.movement() == Movement::object) rays_.emplace(scene_);
-        primary_points(*rays_, scene_, scene_.camera, result_.width, result_.height, points_);
+        primary_points(*rays_, scene_, scene_.camera, points_.raster->width, points_.raster->height, points_);
     }
 
     const MotionOptions& options_;
@@ -144,6 +151,7 @@ private:
     Scene scene_;
     SceneFacts facts_;
     PointBatch points_;
+    Reference reference_;
     std::optional<RayScene> rays_;
     Shuffler dice_;
     std::vector<std::size_t> order_;                 ///< of methods, as of the last turns

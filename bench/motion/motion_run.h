@@ -7,10 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/motion/frame_errors.h"
-#include "umbra/bench/motion/kept_method.h"
+#include "umbra/bench/motion/motion_record.h"
 #include "umbra/bench/run/prepare.h"
-#include "umbra/bench/run/reference.h"
 #include "umbra/bench/time/turns.h"
 
 namespace umbra {
@@ -22,23 +20,6 @@ struct MotionOptions {
     TurnOptions still{.budget_ms = 20000};
     std::function<void(const std::string&)> progress{};  ///< may be empty
 };
-
-DESCRIBE(RunTimes) {
-    of("build_ms", &R::build, "0 where the movement does not repeat it", at_least(0));
-    of("aim_ms", &R::aim, "one a light");
-    of("look_ms", &R::look, "once for all lights; 0 where the movement does not repeat it", at_least(0));
-    of("visibility_ms", &R::visibility, "one a light");
-}
-
-struct MotionFrame {
-    RunTimes times{};
-    FrameErrors errors{};
-};
-DESCRIBE(MotionFrame) {
-    of.name("frame");
-    of.all(&R::times);
-    of.all(&R::errors);
-}
 
 /// One method. Frames end where it failed.
 struct MethodMotion {
@@ -52,34 +33,13 @@ struct MethodMotion {
     }
 };
 
-/// One movement of the scene. What all methods share is no part of their times: medians over the frames, milliseconds.
-struct MovementRecord {
-    std::string movement{}, what{}, cannot{};  ///< as of Animation; `what` is empty where the scene cannot
-    double points_ms = kUnknown, facts_ms = kUnknown, truth_ms = kUnknown;
-};
-DESCRIBE(MovementRecord) {
-    of(MEMBER(movement), "", one_of({"camera", "light", "object"}));
-    of.may(MEMBER(what), "moves, in words");
-    of.may(MEMBER(cannot), "why the scene cannot have it; then there is nothing else");
-    of.may(MEMBER(points_ms), "new surface points, median of the frames; in no method's time", at_least(0));
-    of.may(MEMBER(facts_ms), "", at_least(0));
-    of.may(MEMBER(truth_ms), "", at_least(0));
-}
-
 struct SceneMotion {
-    std::string name, title;
-    std::size_t triangles = 0;
-    int width = 0, height = 0;
-    std::vector<Light> lights;
-    LightId moved = 0;  ///< the light that moves
-    std::optional<Reference> reference;
-    bool sampled = false;  ///< whether errors are those at a sample of the points (MotionOptions::area_points)
-    std::array<MovementRecord, kMovements.size()> movements;
-    double noise_bar = 0;  ///< as of Turns
-    std::vector<MethodMotion> methods;
+    SceneMotionRecord record{};  ///< without its methods, winners and break-even points: scene_motion_record adds them
+    LightId moved = 0;           ///< the light that moves
+    std::vector<MethodMotion> methods{};
 
     [[nodiscard]] const MovementRecord& of(Movement movement) const {
-        return movements[static_cast<std::size_t>(movement)];
+        return record.movements[static_cast<std::size_t>(movement)];
     }
 };
 

@@ -104,7 +104,7 @@ std::optional<WinnerRecord> winner(const SceneMotion& motion, const std::vector<
     for (std::size_t k = 1; k < entries.size(); ++k) {
         const Ratio ratio = paired_ratio(entries[k].times, entries[0].times);
         if (k == 1) won.runner_up = entries[k].method, won.runner_up_over_winner = ratio_record(ratio);
-        if (ratio.median < 1 || !differs(ratio, motion.noise_bar)) won.ties.push_back(entries[k].method);
+        if (ratio.median < 1 || !differs(ratio, motion.record.noise_bar)) won.ties.push_back(entries[k].method);
     }
     return won;
 }
@@ -112,13 +112,13 @@ std::optional<WinnerRecord> winner(const SceneMotion& motion, const std::vector<
 std::vector<BreakEvenRecord> break_evens(const SceneMotion& motion, const std::vector<std::size_t>& competitors) {
     constexpr double never = std::numeric_limits<double>::infinity();
     std::vector<BreakEvenRecord> pairs;
-    if (is_too_noisy(motion.noise_bar)) return pairs;
+    if (is_too_noisy(motion.record.noise_bar)) return pairs;
     for (const std::size_t slow : competitors)
         for (const std::size_t fast : competitors) {
             const TurnTimes &a = motion.methods[slow].still, &b = motion.methods[fast].still;
             const auto start   = [](const TurnTimes& t) { return median(t.build) + median(t.aim); };
             const auto frame   = [](const TurnTimes& t) { return median(t.look) + median(t.visibility); };
-            const double noise = 1 + motion.noise_bar;
+            const double noise = 1 + motion.record.noise_bar;
             if (!(start(a) > start(b) * noise && frame(b) > frame(a) * noise)) continue;
             const double setup = start(a) - start(b), saves = frame(b) - frame(a);
             const double frames = std::ceil(setup / saves);

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "umbra/bench/motion/motion_record.h"
+#include "umbra/bench/motion/motion_run.h"
 
 namespace umbra {
 

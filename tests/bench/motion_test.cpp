@@ -404,7 +404,7 @@ TEST(Motion, AreaLightsAreComparedAtASampleOfEachFrame) {
     options.still.rounds = 1;
     const SceneMotion motion =
         run_motion(prepared(std::move(scene)), {parse_method("exact"), parse_method("ray_traced:samples=1")}, options);
-    EXPECT_TRUE(motion.sampled);
+    EXPECT_TRUE(motion.record.reference.sampled);
     for (const Movement movement : kMovements)
         for (std::size_t k = 0; k < 2; ++k) {
             const FrameErrors &exact = motion.methods[0].of(movement)[k].errors,
@@ -423,9 +423,10 @@ TEST(Motion, AreaLightsAreComparedAtASampleOfEachFrame) {
 /// the same.
 SceneMotion made_up(const std::vector<std::array<double, 4>>& phases) {
     static const MethodInfo info = planted_method();
-    SceneMotion motion;
-    motion.noise_bar = 0.05;
-    motion.lights.resize(1);
+    SceneMotion motion{.record = {.lights    = {{.name = "lamp", .kind = "point"}},
+                                  .reference = {.method = "planted", .exact = true},
+                                  .noise_bar = 0.05,
+                                  .movements = std::vector<MovementRecord>(kMovements.size())}};
     for (const auto& [build, aim, look, visibility] : phases) {
         MethodMotion method{.still = {.choice = MethodChoice(info)}};
         method.still.choice.settings.set("seed", double(motion.methods.size()));
@@ -488,7 +489,6 @@ TEST(MotionSummary, OneStatisticSaysWhoWinsAndByHowMuch) {
                 1e-12);
     EXPECT_NEAR(behind.coverage, 1 - 2 * (1 + 16 + 120 + 560) / 65536.0, 1e-12) << "the fourth least of 16";
 
-    motion.reference   = Reference{motion.methods[0].still.choice, true, ""};
     const Json json    = to_record(scene_motion_record(motion, 0.02));
     const Json &camera = json["methods"][0]["movements"]["camera"], &ratio = camera["frame_over_model"];
     EXPECT_EQ(camera["median_ms"], 1.0);
@@ -517,7 +517,7 @@ TEST(MotionSummary, OneStatisticSaysWhoWinsAndByHowMuch) {
     EXPECT_NE(table.find(row("camera and light in turns", "planted 0.75 ms (next: other, x 5.33)")), std::string::npos);
     EXPECT_NE(table.find(row("object", "other 6.00 ms (next: planted, x 1.83)")), std::string::npos) << table;
 
-    motion.noise_bar        = 1.5;
+    motion.record.noise_bar = 1.5;
     MotionRecord noisy      = record;
     noisy.motion[0]         = scene_motion_record(motion, 0.02);
     const std::string equal = motion_table(noisy);
@@ -541,7 +541,6 @@ TEST(MotionSummary, ErrorsAreTheMeanAndTheWorstOfTheFrames) {
     frames[0].errors = {.points = 10, .undefined = 1, .wrong = 2, .interior = 3, .rmse = 0.1, .max = 0.2};
     frames[1].errors = {.points = 10, .undefined = 2, .wrong = 2, .interior = 4, .rmse = 0.4, .max = 0.5};
     frames[2].errors = {.points = 10, .undefined = 4, .wrong = 2, .interior = 5, .rmse = 0.1, .max = 0.2};
-    motion.reference = Reference{motion.methods[0].still.choice, true, ""};
     const Json json  = to_record(scene_motion_record(motion, 0.02))["methods"][0]["movements"]["camera"];
     EXPECT_NEAR(json["mean_rmse"].get<double>(), 0.2, 1e-15);
     EXPECT_EQ(json["worst_rmse"], 0.4);
@@ -561,7 +560,6 @@ TEST(MotionSummary, ErrorsOfAPartAreLabelledSo) {
     std::vector<MotionFrame>& frames = motion.methods[0].frames[0];
     for (MotionFrame& frame : frames) frame.errors = {.points = 0, .undefined = 40, .interior = 0};
     frames[1].errors = frames[4].errors = {.points = 30, .undefined = 90, .wrong = 2, .interior = 1, .rmse = 0.3};
-    motion.reference                    = Reference{motion.methods[0].still.choice, true, ""};
     Json json                           = to_record(scene_motion_record(motion, 0.02));
     const Json& part                    = json["methods"][0]["movements"]["camera"];
     EXPECT_NEAR(part["mean_rmse"].get<double>(), 0.3, 1e-15);
@@ -621,20 +619,20 @@ TEST(MotionSummary, ABuildPaysOffAfterItsFrames) {
 
 /// 11 against 9.2 until the first frame: 1.196 times as long.
 TEST(MotionSummary, NothingPaysOffInNoise) {
-    SceneMotion motion = made_up({{10, 1, 0.5, 0.5}, {8.2, 1, 1.5, 2}});
-    motion.noise_bar   = 0.19;
+    SceneMotion motion      = made_up({{10, 1, 0.5, 0.5}, {8.2, 1, 1.5, 2}});
+    motion.record.noise_bar = 0.19;
     EXPECT_EQ(break_evens(motion, complete(motion)).size(), 1u);
-    motion.noise_bar = 0.2;
+    motion.record.noise_bar = 0.2;
     EXPECT_TRUE(break_evens(motion, complete(motion)).empty());
-    motion           = made_up({{10, 1, 0.5, 0.5}, {0, 1, 1.5, 2}});
-    motion.noise_bar = 0.31;
+    motion                  = made_up({{10, 1, 0.5, 0.5}, {0, 1, 1.5, 2}});
+    motion.record.noise_bar = 0.31;
     EXPECT_TRUE(break_evens(motion, complete(motion)).empty()) << "nothing is ranked there";
 }
 
 TEST(MotionSummary, MixesOfAMovementThatCannotBeAreLeftOut) {
-    SceneMotion motion         = made_up({{1, 1, 0, 1}});
-    motion.movements[2].cannot = "no";
-    std::size_t left           = 0;
+    SceneMotion motion                = made_up({{1, 1, 0, 1}});
+    motion.record.movements[2].cannot = "no";
+    std::size_t left                  = 0;
     for (const Mix& mix : canonical_mixes()) {
         EXPECT_NEAR(mix.share[0] + mix.share[1] + mix.share[2], 1, 1e-15);
         EXPECT_EQ(has(motion, mix), mix.share[2] == 0) << mix.name;
