@@ -92,8 +92,6 @@ LaddersRecord read_ladders(const std::filesystem::path& file) {
     return record;
 }
 
-Json ladders_schema() { return schema_of<LaddersRecord>("results.json of umbra ladder: where methods break"); }
-
 std::vector<ListedFailureRecord> failed_climbs(const LadderRun& run) {
     std::vector<ListedFailureRecord> all;
     const auto add = [&](double rung, const std::string& method, const std::optional<std::string>& light,

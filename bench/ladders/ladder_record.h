@@ -132,7 +132,6 @@ DESCRIBE(LaddersRecord) {
 
 /// Throws InputError: "FILE:/POINTER: found WHAT, expected WHAT".
 [[nodiscard]] LaddersRecord read_ladders(const std::filesystem::path& file);
-[[nodiscard]] Json ladders_schema();  ///< JSON Schema, draft 4
 
 [[nodiscard]] LadderInfoRecord ladder_info(const Ladder& ladder);
 [[nodiscard]] LadderRecord ladder_record(const LadderRun& run);

@@ -150,6 +150,4 @@ FamilyRecord family_record(const GrowthRun& run) {
     return record;
 }
 
-Json growth_schema() { return schema_of<GrowthRecord>("results.json of umbra growth"); }
-
 }  // namespace umbra

@@ -170,6 +170,5 @@ DESCRIBE(GrowthRecord) {
 [[nodiscard]] std::vector<CrossingRecord> measured_crossings(const GrowthSeries& a, const GrowthSeries& b,
                                                              Quantity quantity);
 [[nodiscard]] FamilyRecord family_record(const GrowthRun& run);
-[[nodiscard]] Json growth_schema();  ///< JSON Schema, draft 4
 
 }  // namespace umbra

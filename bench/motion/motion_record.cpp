@@ -84,6 +84,4 @@ SceneMotionRecord scene_motion_record(const SceneMotion& motion, double max_rmse
     return record;
 }
 
-Json motion_schema() { return schema_of<MotionRecord>("results.json of umbra motion"); }
-
 }  // namespace umbra

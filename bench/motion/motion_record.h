@@ -216,6 +216,5 @@ struct SceneMotion;
 [[nodiscard]] RatioRecord ratio_record(const Ratio& ratio);
 /// With the winners and break-even points of the scene.
 [[nodiscard]] SceneMotionRecord scene_motion_record(const SceneMotion& motion, double max_rmse);
-[[nodiscard]] Json motion_schema();  ///< JSON Schema, draft 4
 
 }  // namespace umbra

@@ -134,9 +134,4 @@ FirstAnswerRecord first_answer_record(const FirstAnswer& a, const RecommendOptio
     return record;
 }
 
-Json recommendation_schema() {
-    return schema_of<RecommendationRecord>(
-        "umbra recommend --json: the cheapest setting within limits, and its evidence");
-}
-
 }  // namespace umbra

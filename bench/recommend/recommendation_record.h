@@ -232,6 +232,5 @@ DESCRIBE(RecommendationRecord) {
 
 [[nodiscard]] RecommendationRecord recommendation_record(const Recommendation& r, const RecommendOptions& options);
 [[nodiscard]] FirstAnswerRecord first_answer_record(const FirstAnswer& answer, const RecommendOptions& options);
-[[nodiscard]] Json recommendation_schema();  ///< JSON Schema, draft 4
 
 }  // namespace umbra

@@ -84,10 +84,6 @@ SweepRecord sweep_record(std::span<const MeasuredSetting> settings, int views, c
     return record;
 }
 
-Json sweep_schema() {
-    return schema_of<SweepResults>("results.json of umbra sweep: many settings of shadow methods on one scene");
-}
-
 std::string front_in_words(const std::string& scene, const SweepRecord& sweep) {
     // Without times nothing is ranked by them; of too few rounds nobody knows how far they vary.
     const double bar       = !sweep.turns ? 0 : sweep.turns->noise_bar.value_or(noise_bar({}));

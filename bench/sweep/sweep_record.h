@@ -28,8 +28,6 @@ struct MeasuredSetting {
 [[nodiscard]] SweepRecord sweep_record(std::span<const MeasuredSetting> settings, int views, const Workload& workload,
                                        const std::optional<SweptTurnsRecord>& turns);
 
-[[nodiscard]] Json sweep_schema();  ///< JSON Schema, draft 4, of SweepResults
-
 /// The front of the first metric, a line a setting. All settings that may be on a front, in the order of the record,
 /// where times vary too much to rank them.
 [[nodiscard]] std::string front_in_words(const std::string& scene, const SweepRecord& sweep);

@@ -20,7 +20,7 @@
 #include "umbra/bench/studies/shading/shading_choice.h"
 #include "umbra/bench/studies/whitted/whitted_record.h"
 #include "umbra/bench/sweep/metrics.h"
-#include "umbra/bench/sweep/sweep_record.h"
+#include "umbra/bench/trade/sweep_results.h"
 #include "umbra/bench/truth/truth_set.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/suggest.h"
@@ -108,11 +108,18 @@ int list_one(const std::string& name, bool as_json) {
 
 const std::map<std::string, Json (*)()> kSchemas = {
     {"results", results_schema},
-    {"ladders", ladders_schema},
-    {"motion", motion_schema},
-    {"growth", growth_schema},
-    {"sweep", sweep_schema},
-    {"recommend", recommendation_schema},
+    {"ladders", [] { return schema_of<LaddersRecord>("results.json of umbra ladder: where methods break"); }},
+    {"motion", [] { return schema_of<MotionRecord>("results.json of umbra motion"); }},
+    {"growth", [] { return schema_of<GrowthRecord>("results.json of umbra growth"); }},
+    {"sweep",
+     [] {
+         return schema_of<SweepResults>("results.json of umbra sweep: many settings of shadow methods on one scene");
+     }},
+    {"recommend",
+     [] {
+         return schema_of<RecommendationRecord>(
+             "umbra recommend --json: the cheapest setting within limits, and its evidence");
+     }},
     {"bias", [] { return schema_of<BiasRecord>("results.json of umbra bias"); }},
     {"brdf", [] { return schema_of<BrdfRecord>("brdf --json: reflectances of a scene's materials"); }},
     {"grade", [] { return schema_of<GradeRecord>("results.json of umbra grade and handin, one a submission"); }},
