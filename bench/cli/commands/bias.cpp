@@ -1,4 +1,3 @@
-#include "umbra/bench/cli/bias_command.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
 #include "umbra/bench/out/own_files.h"

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <tuple>
 
+#include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/run/at_work.h"
+#include "umbra/bench/run/chosen.h"
 #include "umbra/bench/run/reference.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/errors/error_causes.h"
@@ -120,21 +122,7 @@ void compare_settings(BiasSceneRecord& scene) {
         cells, [&](const BiasCell& c) { return c.errors.interior() < scene.automatic.interior(); }));
 }
 
-}  // namespace
-
-BiasErrors& BiasErrors::operator+=(const BiasErrors& other) {
-    false_shadow.interior += other.false_shadow.interior;
-    false_shadow.edge += other.false_shadow.edge;
-    false_light.interior += other.false_light.interior;
-    false_light.edge += other.false_light.edge;
-    return *this;
-}
-
-BiasGrid bias_grid() {
-    const std::vector<double> doubling{0, 0.125, 0.25, 0.5, 1, 2, 4, 8, 16, 32, 64, 128};
-    return {doubling, doubling, {0, 1, 2, 4}};
-}
-
+/// All scenes' counts added up, as a scene called "all".
 BiasSceneRecord add_up(const std::vector<BiasSceneRecord>& scenes) {
     BiasSceneRecord all = scenes.at(0);
     all.scene           = "all";
@@ -153,16 +141,9 @@ BiasSceneRecord add_up(const std::vector<BiasSceneRecord>& scenes) {
     return all;
 }
 
-void check_bias_map(const std::string& settings) {
-    const MethodChoice studied = choose(settings);
-    const BiasGrid grid        = bias_grid();
-    for (double offset : grid.normal_offsets) (void)with_bias(studied, "manual", 0, 0, offset).make();
-}
-
-BiasSceneRecord study_bias(PreparedScene prepared, const std::string& settings,
+/// Runs `studied` over the grid.
+BiasSceneRecord study_bias(PreparedScene prepared, const MethodChoice& studied,
                            const std::function<void(const std::string&)>& progress) {
-    check_bias_map(settings);
-    const MethodChoice studied = choose(settings);
     harden_lights(prepared);
     const Scene& scene  = prepared.scene;
     const BiasGrid grid = bias_grid();
@@ -194,6 +175,61 @@ BiasSceneRecord study_bias(PreparedScene prepared, const std::string& settings,
     }
     compare_settings(study);
     return study;
+}
+
+}  // namespace
+
+BiasErrors& BiasErrors::operator+=(const BiasErrors& other) {
+    false_shadow.interior += other.false_shadow.interior;
+    false_shadow.edge += other.false_shadow.edge;
+    false_light.interior += other.false_light.interior;
+    false_light.edge += other.false_light.edge;
+    return *this;
+}
+
+BiasGrid bias_grid() {
+    const std::vector<double> doubling{0, 0.125, 0.25, 0.5, 1, 2, 4, 8, 16, 32, 64, 128};
+    return {doubling, doubling, {0, 1, 2, 4}};
+}
+
+void check_bias_map(const std::string& settings) {
+    const MethodChoice studied = choose(settings);
+    const BiasGrid grid        = bias_grid();
+    for (double offset : grid.normal_offsets) (void)with_bias(studied, "manual", 0, 0, offset).make();
+}
+
+BiasRecord study_biases(const std::vector<std::filesystem::path>& files, const BiasOptions& options,
+                        std::vector<std::string>& failed) {
+    check_bias_map(options.map);
+    const MethodChoice studied = choose(options.map);
+    BiasRecord record{
+        .head    = head_record(options.command),
+        .machine = machine_record(options.threads),
+        .size    = {static_cast<std::uint64_t>(options.size.width), static_cast<std::uint64_t>(options.size.height)},
+        .map     = options.map,
+        .grid    = bias_grid()};
+    for (const auto& [file, name, folder] : chosen_scenes(files)) {
+        try {
+            PreparedScene prepared = prepare_scene(file, options.size);
+            prepared.scene.name    = name;
+            BiasSceneRecord study  = study_bias(std::move(prepared), studied, options.progress);
+            if (study.points > 0)
+                record.bias.push_back(std::move(study));
+            else
+                failed.push_back(fmt::format("{}: no point is judged: no lit surface is in view", file.string()));
+        } catch (const InputError& e) {
+            failed.emplace_back(e.what());
+        } catch (...) {
+            record.failed.push_back({.scene = name, .method = "the study", .failure = {.message = current_message()}});
+        }
+    }
+    if (record.bias.empty()) return record;
+    if (record.bias.size() > 1) record.bias.insert(record.bias.begin(), add_up(record.bias));
+
+    StagedFiles staged;
+    write_study_files(bias_report(record), record, options.out, staged);
+    staged.commit();
+    return record;
 }
 
 }  // namespace umbra

@@ -1,9 +1,10 @@
-// The bias study of the shadow z-buffer: false shadow (acne) against false light (detachment) over what bias can be, as
-// a record of counts of wrong points.
+// `umbra bias`: false shadow (acne) of the shadow z-buffer against its false light (detachment) over what bias can be,
+// as a record of counts of wrong points.
 //
 // Settings of the visibility phase alone reuse the maps that are there; the truth is the default reference.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -93,17 +94,25 @@ DESCRIBE(BiasRecord) {
     MEMBERS(failed, csv);
 }
 
-/// All scenes' counts added up, as a scene called "all".
-[[nodiscard]] BiasSceneRecord add_up(const std::vector<BiasSceneRecord>& scenes);
+struct BiasOptions {
+    Size size{320, 180};
+    std::string map;  ///< settings of shadow_zbuffer other than bias, "k=v,k=v"; may be empty
+    std::filesystem::path out;
+    std::string command;  ///< for the record
+    int threads = 0;
+    std::function<void(const std::string&)> progress;  ///< receives status messages
+};
 
 /// Throws UsageError where the settings are wrong, set a bias, or exclude one of the grid.
 void check_bias_map(const std::string& settings);
 
-/// Runs shadow_zbuffer with `settings` ("k=v,k=v", none of them about bias; may be empty) over the grid. Area lights
-/// are taken for points in their centres, as the method takes them: the study is of bias, not of penumbrae. Throws
-/// UsageError where the settings are wrong or set a bias.
-[[nodiscard]] BiasSceneRecord study_bias(PreparedScene prepared, const std::string& settings,
-                                         const std::function<void(const std::string&)>& progress);
+/// Studies the scenes and writes OUT/results.json, OUT/bias.csv and the page OUT/index.html. Returns the record. The
+/// messages of unreadable scenes, or scenes whose meshes are missing, are appended to `failed`; these are skipped.
+/// Scenes on which a method threw are in the record's `failed`; without any study nothing is written. Area lights are
+/// taken for points in their centres, as the method takes them: the study is of bias, not of penumbrae. Throws
+/// UsageError, InputError.
+BiasRecord study_biases(const std::vector<std::filesystem::path>& files, const BiasOptions& options,
+                        std::vector<std::string>& failed);
 
 /// Of the record of `umbra bias` alone.
 [[nodiscard]] StudyReport bias_report(const BiasRecord& record);

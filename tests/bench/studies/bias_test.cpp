@@ -6,7 +6,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "umbra/bench/cli/bias_command.h"
 #include "umbra/bench/studies/bias/bias_study.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/errors/error_causes.h"
