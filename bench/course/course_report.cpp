@@ -179,7 +179,7 @@ std::vector<std::string> write_course(const Course& course, CompareOptions optio
                             {"exercises", exercises_view(chapter, course.record.answers)},
                             {"words", words}});
     }
-    const PageHead head{course.record.title, "", {"slider.js", "pictures.js"}, std::string(course.language.code)};
+    const PageHead head{course.record.title, {"slider.js", "pictures.js"}, "", std::string(course.language.code)};
     staged.write(root / "index.html", render_page(assets::course_html, head,
                                                   {{"title", course.record.title},
                                                    {"paragraphs", paragraphs(course.record.text)},

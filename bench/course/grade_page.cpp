@@ -161,7 +161,7 @@ void write_grade_page(const GradeRecord& grade, const RubricRecord& rubric, cons
     std::vector<SceneFiles> files;
     files.reserve(pages.size());
     for (const ScenePage& page : pages) files.emplace_back(page, staged);
-    const PageHead head{fmt::format("{}: {}", grade.handed_in, grade.rubric), "", {"slider.js", "pictures.js"}};
+    const PageHead head{fmt::format("{}: {}", grade.handed_in, grade.rubric), {"slider.js", "pictures.js"}};
     staged.write(root / "index.html",
                  render_page(assets::grade_html, head,
                              {{"title", grade.rubric},

@@ -222,9 +222,8 @@ void write_ladder_page(const LaddersRecord& record, const fs::path& folder, cons
     view["ladder_count"] = counted(double(record.ladders.size()), "ladder");
     view["break_count"]  = counted(broken, "break");
 
-    const PageHead head = {"Stability: where each method breaks", "", {"pictures.js"}};
-    staged.write(folder / "index.html", render_page(assets::ladders_html, head, std::move(view)));
-    write_page_assets(folder, head.scripts, staged);
+    write_page(folder, assets::ladders_html, {"Stability: where each method breaks", {"pictures.js"}}, std::move(view),
+               staged);
 }
 
 void write_ladder_page(const fs::path& folder) {

@@ -155,9 +155,8 @@ void write_growth_page(const GrowthRecord& record, const std::filesystem::path& 
     json view        = record_view(record.head, record.machine, record.load_average, record.failed);
     view["families"] = json::array();
     for (const FamilyRecord& family : record.growth) view["families"].push_back(family_view(family));
-    const PageHead head = {"Growth: times over triangles, pixels, lights, samples", "", {}};
-    staged.write(out / "index.html", render_page(assets::growth_html, head, view));
-    write_page_assets(out, head.scripts, staged);
+    write_page(out, assets::growth_html, {"Growth: times over triangles, pixels, lights, samples"}, std::move(view),
+               staged);
 }
 
 }  // namespace umbra

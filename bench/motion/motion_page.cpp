@@ -182,9 +182,8 @@ void write_motion_page(const MotionRecord& record, const std::filesystem::path& 
     view["scenes"]   = json::array();
     for (const SceneMotionRecord& scene : record.motion)
         view["scenes"].push_back(scene_view(record, scene, view["scenes"].size() + 1));
-    const PageHead head = {"What moves: the fastest shadow method by movement", "", {}};
-    staged.write(out / "index.html", render_page(assets::motion_html, head, view));
-    write_page_assets(out, head.scripts, staged);
+    write_page(out, assets::motion_html, {"What moves: the fastest shadow method by movement"}, std::move(view),
+               staged);
 }
 
 }  // namespace umbra

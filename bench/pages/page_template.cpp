@@ -74,4 +74,10 @@ void write_page_assets(const std::filesystem::path& folder, const std::vector<st
             if (script == name) staged.write(folder / name, content);
 }
 
+void write_page(const std::filesystem::path& folder, std::string_view page, const PageHead& head, json view,
+                StagedFiles& staged) {
+    staged.write(folder / "index.html", render_page(page, head, std::move(view)));
+    write_page_assets(folder, head.scripts, staged);
+}
+
 }  // namespace umbra

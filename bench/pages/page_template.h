@@ -16,10 +16,10 @@ namespace umbra {
 
 /// What the head of a page holds.
 struct PageHead {
-    std::string title;                 ///< of the browser's tab
-    std::string root;                  ///< address of the folder of style and scripts, seen from the page; "" or "x/"
-    std::vector<std::string> scripts;  ///< "slider.js", ...: files of bench/pages/assets
-    std::string language = "en";       ///< of the page's text, as HTML names it
+    std::string title{};                 ///< of the browser's tab
+    std::vector<std::string> scripts{};  ///< "slider.js", ...: files of bench/pages/assets
+    std::string root{};                  ///< address of the folder of style and scripts, seen from the page; "" or "x/"
+    std::string language = "en";         ///< of the page's text, as HTML names it
 };
 
 /// A page from its template. Parts that pages share (bench/pages/assets/parts) are partials, named as their files. Of a
@@ -29,5 +29,9 @@ struct PageHead {
 /// Style and scripts of pages with these heads, written to `folder`. Throws InputError.
 void write_page_assets(const std::filesystem::path& folder, const std::vector<std::string>& scripts,
                        StagedFiles& staged);
+
+/// folder/index.html from its template, with style and scripts beside it: the head's root is "". Throws InputError.
+void write_page(const std::filesystem::path& folder, std::string_view page, const PageHead& head, nlohmann::json view,
+                StagedFiles& staged);
 
 }  // namespace umbra

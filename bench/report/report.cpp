@@ -35,7 +35,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 const std::vector<std::string> kSceneScripts = {"slider.js", "compare.js", "pictures.js"};
-const std::vector<std::string> kIndexScripts = {"slider.js", "finder.js", "pictures.js"};
 
 std::vector<fs::path> results_files(const fs::path& dir) {
     std::vector<fs::path> files;
@@ -259,11 +258,9 @@ json lectures_section(const std::vector<SceneFiles>& files, const Found& found, 
     json view = lectures_view(sources, out, options.language);
     if (!view.is_object()) return false;
     const std::string title = view["title"];
-    staged.write(
-        out / "lectures.html",
-        render_page(assets::lectures_html,
-                    {.title = title, .root = "", .scripts = {}, .language = std::string(options.language.code)},
-                    std::move(view)));
+    staged.write(out / "lectures.html",
+                 render_page(assets::lectures_html, {.title = title, .language = std::string(options.language.code)},
+                             std::move(view)));
     return {{"page", "lectures.html"}};
 }
 
@@ -275,7 +272,7 @@ json renderers_section(const std::vector<ScenePage>& scenes, const std::vector<S
     json section = {{"page", "renderers.html"}, {"lines", view["contenders"]}};
     staged.write(
         out / "renderers.html",
-        render_page(assets::renderers_html, {"Renderers against the truth", "", {"pictures.js"}}, std::move(view)));
+        render_page(assets::renderers_html, {"Renderers against the truth", {"pictures.js"}}, std::move(view)));
     return section;
 }
 
@@ -298,7 +295,7 @@ std::string scene_page(const SceneFiles& files, const std::vector<MethodRecord>&
     json view        = scene_view(files, settings);
     view["previous"] = previous;
     view["next"]     = next;
-    return render_page(assets::scene_html, {fmt::format("{} – {}", files.scene().title, title), root, kSceneScripts},
+    return render_page(assets::scene_html, {fmt::format("{} – {}", files.scene().title, title), kSceneScripts, root},
                        std::move(view));
 }
 
@@ -365,9 +362,8 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
     index["lectures"]  = lectures_section(files, found, root, options, staged);
     add_failures(index, options.failed, found);
     index["so_far"] = options.so_far;
-    staged.write(root / "index.html",
-                 render_page(assets::index_html, {options.title, "", kIndexScripts}, std::move(index)));
-    write_page_assets(root, kIndexScripts, staged);
+    write_page(root, assets::index_html, {options.title, {"slider.js", "finder.js", "pictures.js"}}, std::move(index),
+               staged);
     write_scene_assets(root, staged);
     staged.commit();
 }

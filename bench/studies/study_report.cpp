@@ -222,9 +222,7 @@ void write_study_page(const StudyReport& report, const HeadRecord& head, const f
     for (const StudyCurve& curve : report.curves) view["curves"].push_back(curve_view(curve));
     for (const StudySentence& sentence : shown(report.sentences, Shown::on_page))
         view["sentences"].push_back({{"parts", marked(sentence.text)}});
-    const PageHead page = {report.title, "", {}};
-    staged.write(folder / "index.html", render_page(report.page, page, view));
-    write_page_assets(folder, page.scripts, staged);
+    write_page(folder, report.page, {report.title}, std::move(view), staged);
 }
 
 }  // namespace umbra

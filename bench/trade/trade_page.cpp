@@ -69,9 +69,7 @@ std::vector<TradeLine> write_trade_page(const std::vector<fs::path>& results_jso
     view["setting_count"] = counted(double(settings), "setting");
     view["fixed"]         = fixed_errors_view(scenes, methods);
 
-    const PageHead head = {"The trade: error against frame cost", "", {}};
-    staged.write(folder / "index.html", render_page(assets::trade_html, head, std::move(view)));
-    write_page_assets(folder, head.scripts, staged);
+    write_page(folder, assets::trade_html, {"The trade: error against frame cost"}, std::move(view), staged);
     return lines;
 }
 

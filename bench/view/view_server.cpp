@@ -133,7 +133,7 @@ struct ViewServer::Pages {
                            response.set_content(content, type);
                        });
         };
-        const PageHead head{"Umbra view: " + scene_name(options.scene), "", {"view.js"}};
+        const PageHead head{"Umbra view: " + scene_name(options.scene), {"view.js"}};
         get("", render_page(assets::view_html, head, {{"scene", scene_name(options.scene)}}),
             "text/html; charset=utf-8");
         get("report.css", assets::report_css, "text/css; charset=utf-8");
