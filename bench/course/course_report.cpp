@@ -175,7 +175,6 @@ std::vector<std::string> write_course(const Course& course, CompareOptions optio
                             {"title", chapter.title},
                             {"paragraphs", paragraphs(chapter.text)},
                             {"scenes", std::move(scenes)},
-                            {"has_exercises", !chapter.exercises.empty()},
                             {"exercises", exercises_view(chapter, course.record.answers)},
                             {"words", words}});
     }
@@ -184,7 +183,6 @@ std::vector<std::string> write_course(const Course& course, CompareOptions optio
                                                   {{"title", course.record.title},
                                                    {"paragraphs", paragraphs(course.record.text)},
                                                    {"chapters", std::move(chapters)},
-                                                   {"has_failures", !problems.empty()},
                                                    {"failures", problems},
                                                    {"words", words},
                                                    {"version", version()}}));

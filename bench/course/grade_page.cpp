@@ -168,7 +168,6 @@ void write_grade_page(const GradeRecord& grade, const RubricRecord& rubric, cons
                               {"text", rubric.text},
                               {"handed_in", grade.handed_in},
                               {"points", grade.max > 0 ? points_in_words(grade.points, grade.max) : ""},
-                              {"has_failures", !grade.failed.empty() || !grade.not_compared.empty()},
                               {"failures",
                                [&] {
                                    json all = grade.not_compared;
@@ -176,7 +175,6 @@ void write_grade_page(const GradeRecord& grade, const RubricRecord& rubric, cons
                                    return all;
                                }()},
                               {"items", items_view(grade, scenes)},
-                              {"has_items", !grade.items.empty()},
                               {"scenes", scenes_view(grade, scenes, files)},
                               {"apart", grade.apart ? apart_in_words(*grade.apart) : ""},
                               {"has_commands", !grade.head.command.empty()},

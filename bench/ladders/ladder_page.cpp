@@ -77,9 +77,7 @@ json break_view(const LadderRecord& ladder, const ClimbRecord& climbed, const Br
                                                label,
                                                shown.reference,
                                                {.width = shown.width, .height = shown.height}}));
-    const bool has_why = !points.empty();
     return {{"label", label},
-            {"has_why", has_why},
             {"why", std::move(points)},
             {"at", climbed.breaks_at ? fmt::format("{} {}", rung_value(*climbed.breaks_at), ladder.unit) : ""},
             {"kind", climbed.kind.value_or("")},
@@ -128,8 +126,7 @@ json ladder_view(const LadderRecord& ladder, double limit) {
                                      {"shadow", count(double(rung.can_show.shadow))},
                                      {"unjudged", rung.unjudged}});
     }
-    view["truth"]     = truth;
-    view["has_rungs"] = !view["rungs"].empty();
+    view["truth"] = truth;
     for (const ClimbRecord& climbed : ladder.methods) {
         json row      = fared(ladder, climbed);
         row["label"]  = label_of(climbed);
@@ -218,7 +215,6 @@ void write_ladder_page(const LaddersRecord& record, const fs::path& folder, cons
         }
     }
     view["failures"]     = listed_failures(record.failed);
-    view["has_failures"] = !view["failures"].empty();
     view["ladder_count"] = counted(double(record.ladders.size()), "ladder");
     view["break_count"]  = counted(broken, "break");
 

@@ -152,7 +152,6 @@ json textbook_view(const LaddersRecord& record, const std::string& page) {
                                     {"cells", std::move(cells)}});
     }
     view["page"]     = page;
-    view["has_rows"] = !view["rows"].empty();
     view["sentence"] = fmt::format(
         "Of {} climbs (a method on a ladder) the textbook form breaks at an earlier rung than the default form on {}, "
         "at "

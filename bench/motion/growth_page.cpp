@@ -142,9 +142,7 @@ json family_view(const FamilyRecord& family) {
             {"unit", family.unit},
             {"charts", std::move(charts)},
             {"fits", std::move(fits)},
-            {"has_crossings", !crossings.empty()},
             {"crossings", std::move(crossings)},
-            {"has_left_out", !left_out.empty()},
             {"left_out", std::move(left_out)},
             {"external", family.external ? external_view(*family.external) : json(false)}};
 }

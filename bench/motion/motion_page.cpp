@@ -166,9 +166,7 @@ json scene_view(const MotionRecord& record, const SceneMotionRecord& scene, std:
             {"movements", std::move(movements)},
             {"methods", std::move(methods)},
             {"winners", std::move(winners)},
-            {"has_pairs", !pairs.empty()},
             {"pairs", std::move(pairs)},
-            {"has_triangles", !triangles.empty()},
             {"triangles", std::move(triangles)}};
 }
 

@@ -31,7 +31,6 @@ nlohmann::json record_view(const HeadRecord& head, const MachineRecord& machine,
             {"cpu", machine.cpu},
             {"threads", counted(static_cast<double>(machine.threads), "thread")},
             {"load", fmt::format("{} to {}", score(known(load.before)), score(known(load.after)))},
-            {"has_failures", !failures.empty()},
             {"failures", std::move(failures)}};
 }
 

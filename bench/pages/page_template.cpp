@@ -12,7 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Empty strings and lists are false to a template, so that {{#x}} asks whether there is anything to show.
+/// Empty strings and lists are false to a template, so that {{#x}} asks whether there is anything to show. Whether a list
+/// `x` holds anything is has_x, unless the view has a value for that.
 kainjow::mustache::data template_data(const json& view) {
     if (view.is_boolean()) return view.get<bool>();
     if (view.is_string()) {
@@ -25,7 +26,11 @@ kainjow::mustache::data template_data(const json& view) {
         return list;
     }
     kainjow::mustache::data object;
-    for (const auto& entry : view.items()) object.set(entry.key(), template_data(entry.value()));
+    for (const auto& entry : view.items()) {
+        object.set(entry.key(), template_data(entry.value()));
+        const std::string has = "has_" + entry.key();
+        if (entry.value().is_array() && !view.contains(has)) object.set(has, !entry.value().empty());
+    }
     return object;
 }
 

@@ -24,6 +24,7 @@ struct PageHead {
 
 /// A page from its template. Parts that pages share (bench/pages/assets/parts) are partials, named as their files. Of a
 /// view's values, strings, lists, objects, true and false have a meaning; an empty string or list is false.
+/// Beside each list `x` is has_x, true where it holds anything, for what stands around all of its items.
 [[nodiscard]] std::string render_page(std::string_view page, const PageHead& head, nlohmann::json view);
 
 /// Style and scripts of pages with these heads, written to `folder`. Throws InputError.

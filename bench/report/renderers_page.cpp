@@ -127,7 +127,6 @@ json renderers_view(const std::vector<ScenePage>& scenes, const std::vector<Scen
                          {"reference", scenes[i].results.reference.title},
                          {"inexact", !scenes[i].results.reference.exact},
                          {"rows", std::move(rows)},
-                         {"has_pictures", !pictures.empty()},
                          {"pictures", std::move(pictures)}});
     }
     json runs = json::array();

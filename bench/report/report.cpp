@@ -286,8 +286,7 @@ void add_failures(json& index, const std::vector<std::string>& scenes_failed, co
     };
     for (const LadderFolder& folder : found.ladders) add(read_ladders(folder.data / "results.json").failed);
     if (found.experiments) add(from_record<ExperimentsRecord>(found.experiments->root).failed);
-    index["has_failures"] = !failures.empty();
-    index["failures"]     = std::move(failures);
+    index["failures"] = std::move(failures);
 }
 
 std::string scene_page(const SceneFiles& files, const std::vector<MethodRecord>& settings, const json& previous,

@@ -232,42 +232,37 @@ json scene_view(const SceneFiles& scene, const std::vector<MethodRecord>& settin
                                   fmt::format("FLIP map of {}: bright where a viewer notices a difference", label))}});
     }
 
-    json view            = {{"title", scene.scene().title},
-                            {"shows", results.scene.shows},
-                            {"finding", finding(results)},
-                            {"pair", slider_view(scene, worst_method(results))},
-                            {"values", scene.values(results.values)},
-                            {"source", source_of(results.scene)},
-                            {"view", std::filesystem::path(results.scene.source).is_absolute() ? results.scene.name
-                                                                                               : source_of(results.scene)},
-                            {"size", size_in_words(results.size)},
-                            {"warnings", results.scene.warnings},
-                            {"pictures", std::move(pictures)},
-                            {"lights", light_views(scene)},
-                            {"why", why_view(scene)},
-                            {"legend", class_legend()},
-                            {"errors", error_view(results)},
-                            {"causes", cause_view(results)},
-                            {"times", time_view(results)},
-                            {"has_image", !image.empty()},
-                            {"image", std::move(image)},
-                            {"methods", std::move(used)},
-                            {"has_unserved", !unserved.empty()},
-                            {"unserved", std::move(unserved)},
-                            {"facts", fact_view(results.facts)},
-                            {"reference", reference_view(reference)},
-                            {"judged", judged_in_words(reference)},
-                            {"run", run_view(results.head, results.machine)},
-                            {"files", std::move(files)}};
-    view["has_rings"]    = std::any_of(view["lights"].begin(), view["lights"].end(), [](const json& light) {
+    json view         = {{"title", scene.scene().title},
+                         {"shows", results.scene.shows},
+                         {"finding", finding(results)},
+                         {"pair", slider_view(scene, worst_method(results))},
+                         {"values", scene.values(results.values)},
+                         {"source", source_of(results.scene)},
+                         {"view", std::filesystem::path(results.scene.source).is_absolute() ? results.scene.name
+                                                                                            : source_of(results.scene)},
+                         {"size", size_in_words(results.size)},
+                         {"warnings", results.scene.warnings},
+                         {"pictures", std::move(pictures)},
+                         {"lights", light_views(scene)},
+                         {"why", why_view(scene)},
+                         {"legend", class_legend()},
+                         {"errors", error_view(results)},
+                         {"causes", cause_view(results)},
+                         {"times", time_view(results)},
+                         {"image", std::move(image)},
+                         {"methods", std::move(used)},
+                         {"unserved", std::move(unserved)},
+                         {"facts", fact_view(results.facts)},
+                         {"reference", reference_view(reference)},
+                         {"judged", judged_in_words(reference)},
+                         {"run", run_view(results.head, results.machine)},
+                         {"files", std::move(files)}};
+    view["has_rings"] = std::any_of(view["lights"].begin(), view["lights"].end(), [](const json& light) {
         return std::any_of(light["columns"].begin(), light["columns"].end(),
-                              [](const json& column) { return column.contains("rings_words"); });
+                           [](const json& column) { return column.contains("rings_words"); });
     });
-    view["failures"]     = scene_failures(results);
-    view["has_why"]      = !view["why"].empty();
-    view["has_failures"] = !view["failures"].empty();
-    view["has_warnings"] = !view["warnings"].empty();
-    view["chart"]        = chart.empty() ? json(false) : error_time_chart(chart);
+    view["failures"]  = scene_failures(results);
+    view["chart"]     = chart.empty() ? json(false) : error_time_chart(chart);
     return view;
 }
 

@@ -230,9 +230,11 @@ json fact_view(const FactsRecord& facts) {
              {"volume", o.closed ? score(known(o.volume)) : kNone},
              {"faults", std::move(faults)}});
     }
-    return {{"triangles", count(facts.triangles)}, {"size", size_in_words(facts.extent)},
-            {"requires", facts.required},          {"not_required", facts.not_required},
-            {"has_objects", !objects.empty()},     {"objects", std::move(objects)}};
+    return {{"triangles", count(facts.triangles)},
+            {"size", size_in_words(facts.extent)},
+            {"requires", facts.required},
+            {"not_required", facts.not_required},
+            {"objects", std::move(objects)}};
 }
 
 }  // namespace umbra

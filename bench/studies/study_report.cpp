@@ -186,7 +186,6 @@ Json table_view(const StudyTable& table) {
     }
     return {{"id", table.name},
             {"caption", marked(table.caption)},
-            {"has_groups", !groups.empty()},
             {"groups", std::move(groups)},
             {"heads", std::move(heads)},
             {"rows", std::move(rows)}};

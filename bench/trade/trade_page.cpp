@@ -65,7 +65,6 @@ std::vector<TradeLine> write_trade_page(const std::vector<fs::path>& results_jso
         view["scenes"].push_back(std::move(scene));
     }
     view["failures"]      = failures_of(scenes);
-    view["has_failures"]  = !view["failures"].empty();
     view["setting_count"] = counted(double(settings), "setting");
     view["fixed"]         = fixed_errors_view(scenes, methods);
 

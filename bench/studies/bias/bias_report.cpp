@@ -197,7 +197,6 @@ StudyReport bias_report(const BiasRecord& record) {
                        {"height", fmt::format("{}", record.size.height.value_or(0))},
                        {"map", record.map},
                        {"legend", legend()},
-                       {"has_failures", !failures.empty()},
                        {"failures", std::move(failures)},
                        {"studies", std::move(studies)}}};
 }
