@@ -124,8 +124,7 @@ Results compare_scene(const fs::path& file, const CompareOptions& options) {
                     .machine   = machine_record(options.threads),
                     .scene     = scene_record(scene),
                     .facts     = facts_record(prepared.facts),
-                    .size      = {static_cast<std::uint64_t>(prepared.points.raster->width),
-                                  static_cast<std::uint64_t>(prepared.points.raster->height)},
+                    .size      = size_record({prepared.points.raster->width, prepared.points.raster->height}),
                     .lights    = light_records(prepared.facts),
                     .reference = reference_record(main_truth, scene),
                     .budget    = budget_record(options.budget)};

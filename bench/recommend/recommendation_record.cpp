@@ -7,10 +7,6 @@
 namespace umbra {
 namespace {
 
-SizeRecord size_record(const Size& size) {
-    return {.width = static_cast<std::uint64_t>(size.width), .height = static_cast<std::uint64_t>(size.height)};
-}
-
 BeyondRecord beyond_record(const Beyond& beyond) {
     return {.view = beyond.view, .metric = std::string(beyond.metric->name), .error = beyond.error};
 }

@@ -88,6 +88,10 @@ MachineRecord machine_record(int threads) {
             UMBRA_COMPILER};
 }
 
+SizeRecord size_record(Size size) {
+    return {.width = static_cast<std::uint64_t>(size.width), .height = static_cast<std::uint64_t>(size.height)};
+}
+
 SceneRecord scene_record(const Scene& scene) {
     return {scene.name,     scene.title,
             scene.shows,    scene.source,

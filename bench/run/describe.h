@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "umbra/bench/record/record.h"
+#include "umbra/bench/run/prepare.h"
 #include "umbra/bench/run/run.h"
 #include "umbra/core/errors/visibility_error.h"
 #include "umbra/core/scene/facts.h"
@@ -285,6 +286,7 @@ DESCRIBE(MethodInfoRecord) {
 [[nodiscard]] MethodInfoRecord method_info_record(const MethodInfo& info);
 [[nodiscard]] HeadRecord head_record(std::string command);
 [[nodiscard]] MachineRecord machine_record(int threads);
+[[nodiscard]] SizeRecord size_record(Size size);
 [[nodiscard]] SceneRecord scene_record(const Scene& scene);
 [[nodiscard]] FactsRecord facts_record(const SceneFacts& facts);
 [[nodiscard]] std::vector<LightRecord> light_records(const SceneFacts& facts);

@@ -101,12 +101,11 @@ std::string failure_of(const Scene& scene, const MethodRecord& method) {
 
 SweepResults swept_record(SceneLab& lab, const SweepOptions& options, const std::vector<MeasuredSetting>& swept,
                           const std::optional<SweptTurnsRecord>& turns) {
-    const Size size = lab.size();
     return {.head      = head_record(options.command),
             .machine   = machine_record(options.threads),
             .scene     = scene_record(lab.scene()),
             .facts     = facts_record(lab.facts()),
-            .size      = {static_cast<std::uint64_t>(size.width), static_cast<std::uint64_t>(size.height)},
+            .size      = size_record(lab.size()),
             .lights    = light_records(lab.facts()),
             .reference = lab.reference(),
             .sweep     = sweep_record(swept, options.plan.views, options.workload, turns),

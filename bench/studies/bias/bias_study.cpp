@@ -202,12 +202,11 @@ BiasRecord study_biases(const std::vector<std::filesystem::path>& files, const B
                         std::vector<std::string>& failed) {
     check_bias_map(options.map);
     const MethodChoice studied = choose(options.map);
-    BiasRecord record{
-        .head    = head_record(options.command),
-        .machine = machine_record(options.threads),
-        .size    = {static_cast<std::uint64_t>(options.size.width), static_cast<std::uint64_t>(options.size.height)},
-        .map     = options.map,
-        .grid    = bias_grid()};
+    BiasRecord record{.head    = head_record(options.command),
+                      .machine = machine_record(options.threads),
+                      .size    = size_record(options.size),
+                      .map     = options.map,
+                      .grid    = bias_grid()};
     for (const auto& [file, name, folder] : chosen_scenes(files)) {
         try {
             PreparedScene prepared = prepare_scene(file, options.size);
