@@ -70,13 +70,13 @@ private:
                 if (!error || *error > limit.most) return false;
             }
         }
-        std::vector<double> bounds;
+        FirstAnswer answer{{.method = choice.text(), .cost = cost}, choice};
         for (const Limit& limit : options_.limits) {
             const auto bound = upper_bound(*limit.metric, cells);
             if (!bound || *bound > limit.most) return false;
-            bounds.push_back(*bound);
+            answer.bounds.emplace_back(limit.metric->name, *bound);
         }
-        best_.emplace(FirstAnswer{.choice = choice, .bounds = std::move(bounds), .cost = cost});
+        best_ = std::move(answer);
         return true;
     }
 
@@ -124,18 +124,21 @@ std::optional<FirstAnswer> first_answer(SceneLab& coarse, SceneLab& whole, const
             lines.erase(line);
     }
     std::optional<FirstAnswer> answer = search.best();
-    if (answer) answer->size = coarse.size(), answer->views = kFirstViews, answer->in_time = lines.empty();
+    if (!answer) return answer;
+    answer->size    = size_record(coarse.size());
+    answer->views   = kFirstViews;
+    answer->in_time = lines.empty();
     return answer;
 }
 
 std::string first_answer_text(const FirstAnswer& a, const RecommendOptions& options) {
     std::string bounds;
-    for (std::size_t k = 0; k < options.limits.size(); ++k)
-        bounds += fmt::format("{}{} at most {:.3g}", k > 0 ? ", " : "", options.limits[k].metric->name, a.bounds[k]);
+    for (const auto& [metric, bound] : a.bounds)
+        bounds += fmt::format("{}{} at most {:.3g}", bounds.empty() ? "" : ", ", metric, bound);
     return fmt::format(
         "Provisional: {}, about {:.3g} ms a frame with {}\n  {}, by {} views of {} x {} pixels{}; the final answer "
         "follows.\n",
-        a.choice.text(), a.cost, to_text(options.workload), bounds, a.views, a.size.width, a.size.height,
+        a.method, a.cost, to_text(options.workload), bounds, a.views, *a.size.width, *a.size.height,
         a.in_time ? "" : ", before all settings were looked at");
 }
 

@@ -9,14 +9,10 @@
 
 namespace umbra {
 
-struct FirstAnswer {
+/// Bounds are those of upper_bound, in the order of the limits; the cost is by one run on the whole picture, or by one
+/// at few points where that takes over half a second.
+struct FirstAnswer : FirstAnswerRecord {
     MethodChoice choice;
-    std::vector<double> bounds;  ///< [limit], upper_bound from the views that it was looked at in
-    double cost = 0;             ///< ms a frame by one run on the whole picture, or by one at few points
-                                 ///< where that takes over half a second
-    Size size{};                 ///< of the pictures it was looked at in
-    int views    = 0;
-    bool in_time = true;  ///< every family of settings was looked at, or passed over as dearer
 };
 
 /// How many views the first answer is from.

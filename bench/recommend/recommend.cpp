@@ -52,7 +52,7 @@ class Search {
 public:
     Search(SceneLab& small, SceneLab& whole, const RecommendOptions& options, Recommendation& result)
         : small_(small), whole_(whole), options_(options), result_(result) {
-        result_.size = small.size();
+        result_.size = size_record(small.size());
         families_    = families(options.choices);
         std::ranges::stable_sort(families_, {}, [&](const Family& f) {
             return std::pair(!f.front().info->reference, !is_by_proof(f.front()));
@@ -138,7 +138,7 @@ public:
     /// Up to the first view that is beyond a limit. Its cells are kept where all are within.
     [[nodiscard]] std::optional<Dropped> try_on_further_views(std::size_t k) {
         result_.held_out.clear();
-        if (is_the_reference(result_.candidates[k].choice, result_.candidates[k].views)) return std::nullopt;
+        if (is_the_reference(result_.candidates[k].choice, result_.candidates[k].cells)) return std::nullopt;
         for (int view = options_.views, left = options_.held_out; left > 0; ++view, --left) {
             const Cell cell = small_.cell(result_.candidates[k].choice, view);
             small_.release(view);
@@ -153,7 +153,7 @@ public:
 
     /// Whether it is within the limits, and was not dropped.
     [[nodiscard]] bool is_answer(std::size_t k) const {
-        return result_.candidates[k].within(options_.limits) &&
+        return result_.candidates[k].within() &&
                std::ranges::find(result_.dropped, k, &Dropped::candidate) == result_.dropped.end();
     }
 
@@ -180,14 +180,14 @@ public:
         for (const std::size_t k : by_cost) {
             Candidate& c = result_.candidates[k];
             while (!c.is_whole && !is_long(c.choice) && steps_took_ < may_take) {
-                const auto least = c.least_bound(options_.limits, 0);
+                const auto least = c.least_bound(0);
                 if (!least || (!steps.empty() && *least > kStep * steps.back().error)) break;
                 const Stopwatch start;
-                look_on(c, static_cast<int>(c.views.size()) + 1, false);
+                look_on(c, static_cast<int>(c.cells.size()) + 1, false);
                 steps_took_ += start.seconds();
                 if (!c.unfit.empty()) break;
             }
-            const auto error = c.bounds[0];
+            const auto error = c.bound(0);
             if (!is_step(error)) continue;
             const double cost = *r.candidates[k].cost;
             if (!steps.empty() && cost <= same * cheapest) {
@@ -203,11 +203,20 @@ public:
     /// The cost of `k` over that of `base`.
     [[nodiscard]] Rival rival(std::size_t k, std::size_t base) {
         const Candidate &x = result_.candidates[k], &y = result_.candidates[base];
-        Ratio ratio = paired_ratio(x.costs, y.costs);
-        if (ratio.has_interval()) return {k, ratio, umbra::differs(ratio, result_.noise_bar)};
-        if (ratio.pairs > 0) return {k, ratio, std::max(ratio.median, 1 / ratio.median) > kFarByFewRounds};
-        ratio.median = *x.price / *y.price;
-        return {k, ratio, costs_far_more(x.choice, y.choice) || costs_far_more(y.choice, x.choice)};
+        const Ratio ratio = paired_ratio(x.costs, y.costs);
+        CostRatioRecord record{
+            .median = ratio.median, .rounds = static_cast<std::uint64_t>(ratio.pairs), .coverage = ratio.coverage};
+        if (ratio.has_interval()) {
+            record.low     = ratio.interval.low;
+            record.high    = ratio.interval.high;
+            record.differs = differs(ratio, result_.noise_bar);
+        } else if (ratio.pairs > 0) {
+            record.differs = std::max(ratio.median, 1 / ratio.median) > kFarByFewRounds;
+        } else {
+            record.median  = *x.price / *y.price;
+            record.differs = costs_far_more(x.choice, y.choice) || costs_far_more(y.choice, x.choice);
+        }
+        return {k, record};
     }
 
 private:
@@ -240,7 +249,9 @@ private:
 
     std::size_t look(const MethodChoice& choice) {
         if (options_.progress) options_.progress(choice.text());
-        Candidate c{.choice = choice, .bounds = std::vector<std::optional<double>>(options_.limits.size())};
+        Candidate c{{.method = choice.text()}, choice};
+        for (const Limit& limit : options_.limits)
+            c.errors.emplace_back(limit.metric->name, LimitedRecord{.limit = limit.most});
         look_on(c, options_.views, true);
         result_.candidates.push_back(std::move(c));
         return result_.candidates.size() - 1;
@@ -250,26 +261,30 @@ private:
     /// reference one is enough.
     void look_on(Candidate& c, int count, bool while_within) {
         const auto is_enough = [&] {
-            return static_cast<int>(c.views.size()) == options_.views || is_the_reference(c.choice, c.views);
+            return static_cast<int>(c.cells.size()) == options_.views || is_the_reference(c.choice, c.cells);
         };
-        while (!is_enough() && static_cast<int>(c.views.size()) < count) {
-            const int view = static_cast<int>(c.views.size());
-            c.views.push_back(small_.cell(c.choice, view));
-            c.unfit = why_unfit(c.views);
+        while (!is_enough() && static_cast<int>(c.cells.size()) < count) {
+            const int view = static_cast<int>(c.cells.size());
+            c.cells.push_back(small_.cell(c.choice, view));
+            c.views     = c.cells.size();
+            c.undefined = most_undefined(c.cells);
+            c.unfit     = why_unfit(c.cells);
+            for (std::size_t k = 0; k < options_.limits.size(); ++k)
+                c.errors[k].second.largest = largest_value(*options_.limits[k].metric, c.cells);
             if (!c.unfit.empty()) return;
-            if (!c.beyond) c.beyond = beyond_in(c.views.back(), view);
+            if (!c.beyond) c.beyond = beyond_in(c.cells.back(), view);
             if (while_within && c.beyond && !is_enough()) return;
         }
         if (!is_enough()) return;
         c.is_whole = true;
         for (std::size_t k = 0; k < options_.limits.size(); ++k)
-            c.bounds[k] = upper_bound(*options_.limits[k].metric, c.views);
+            c.errors[k].second.bound = upper_bound(*options_.limits[k].metric, c.cells);
     }
 
-    [[nodiscard]] std::optional<Beyond> beyond_in(const Cell& cell, int view) const {
+    [[nodiscard]] std::optional<BeyondRecord> beyond_in(const Cell& cell, int view) const {
         for (const Limit& limit : options_.limits)
             if (const auto error = error_in_view(*limit.metric, cell); !error || *error > limit.most)
-                return Beyond{view, limit.metric, error};
+                return BeyondRecord{view, std::string(limit.metric->name), error};
         return std::nullopt;
     }
 
@@ -346,9 +361,8 @@ private:
 };
 
 /// Of those that were timed, the one that misses by the smallest factor.
-std::optional<std::size_t> nearest_of(Search& search, std::vector<std::size_t> timed, const Recommendation& r,
-                                      const RecommendOptions& options) {
-    const auto ratio = [&](std::size_t k) { return r.candidates[k].worst_ratio(options.limits); };
+std::optional<std::size_t> nearest_of(Search& search, std::vector<std::size_t> timed, const Recommendation& r) {
+    const auto ratio = [&](std::size_t k) { return r.candidates[k].worst_ratio(); };
     std::ranges::stable_sort(timed, {}, ratio);  // of some only what it is no less than is known
     std::optional<std::size_t> nearest;
     for (const std::size_t k : timed) {
@@ -399,25 +413,27 @@ std::vector<Family> families(std::span<const MethodChoice> choices) {
     return all;
 }
 
-bool Candidate::within(std::span<const Limit> limits) const { return is_whole && !beyond && worst_ratio(limits) <= 1; }
+bool Candidate::within() const { return is_whole && !beyond && worst_ratio() <= 1; }
 
-std::optional<double> Candidate::least_bound(std::span<const Limit> limits, std::size_t limit) const {
-    if (is_whole || views.empty()) return bounds[limit];
-    double least = 0;
-    for (const Cell& cell : views) {
-        const std::optional<double> error = error_in_view(*limits[limit].metric, cell);
+std::optional<double> Candidate::least_bound(std::size_t limit) const {
+    if (is_whole || cells.empty()) return bound(limit);
+    const Metric& metric = find_metric(errors[limit].first);
+    double least         = 0;
+    for (const Cell& cell : cells) {
+        const std::optional<double> error = error_in_view(metric, cell);
         if (!error) return std::nullopt;
         least = std::max(least, *error);
     }
     return least;
 }
 
-double Candidate::worst_ratio(std::span<const Limit> limits) const {
+double Candidate::worst_ratio() const {
     double worst = 0;
-    for (std::size_t k = 0; k < limits.size(); ++k) {
-        const std::optional<double> least = least_bound(limits, k);
+    for (std::size_t k = 0; k < errors.size(); ++k) {
+        const std::optional<double> least = least_bound(k);
+        const double limit                = errors[k].second.limit;
         if (!least) return kInfinite;
-        if (*least > 0) worst = std::max(worst, limits[k].most > 0 ? *least / limits[k].most : kInfinite);
+        if (*least > 0) worst = std::max(worst, limit > 0 ? *least / limit : kInfinite);
     }
     return worst;
 }
@@ -470,7 +486,7 @@ Recommendation recommend(SceneLab& small, SceneLab& whole, const RecommendOption
     };
     rank();
     if (within.empty()) {
-        r.nearest   = nearest_of(search, timed, r, options);
+        r.nearest   = nearest_of(search, timed, r);
         r.staircase = search.staircase();
         return r;
     }
@@ -480,7 +496,7 @@ Recommendation recommend(SceneLab& small, SceneLab& whole, const RecommendOption
             const Rival rival = search.rival(within[n], within.front());
             if (rival.tied())
                 r.tied.push_back(rival);
-            else if (!rival.differs)
+            else if (!rival.ratio.differs)
                 r.untold.push_back(rival);
             else if (!r.runner_up)
                 r.runner_up = rival;
@@ -515,31 +531,40 @@ Recommendation recommend(SceneLab& small, SceneLab& whole, const RecommendOption
 
 std::vector<TriedMethod> tried_methods(const Recommendation& r, const RecommendOptions& options) {
     std::vector<TriedMethod> all;
-    const auto of = [&](const MethodInfo* info) -> TriedMethod& {
-        const auto found = std::ranges::find(all, info, &TriedMethod::info);
-        return found != all.end() ? *found : all.emplace_back(TriedMethod{.info = info});
+    const auto of = [&](const MethodChoice& choice) -> TriedMethod& {
+        const auto found = std::ranges::find(all, choice.info->name, &TriedMethod::method);
+        return found != all.end() ? *found : all.emplace_back(TriedMethod{{.method = std::string(choice.info->name)}});
     };
-    for (const MethodChoice& choice : options.choices) ++of(choice.info).settings;
+    for (const MethodChoice& choice : options.choices) ++of(choice).settings;
     // The first of these that differs decides: fit, timed, within the limits, then the cost, or how far it misses.
     const auto rank = [&](std::size_t k) {
         const Candidate& c = r.candidates[k];
-        const bool within  = c.unfit.empty() && c.within(options.limits);
+        const bool within  = c.unfit.empty() && c.within();
         const double cost  = c.cost.value_or(kInfinite);
-        return std::tuple(!c.unfit.empty(), !c.cost, !within, within ? cost : c.worst_ratio(options.limits), cost);
+        return std::tuple(!c.unfit.empty(), !c.cost, !within, within ? cost : c.worst_ratio(), cost);
     };
     for (std::size_t k = 0; k < r.candidates.size(); ++k) {
         const Candidate& c  = r.candidates[k];
-        TriedMethod& method = of(c.choice.info);
+        TriedMethod& method = of(c.choice);
         ++method.looked_at;
-        method.within = method.within || (c.unfit.empty() && c.within(options.limits));
+        method.within = method.within || (c.unfit.empty() && c.within());
         if (!method.candidate || rank(k) < rank(*method.candidate)) method.candidate = k;
     }
     for (std::size_t p = 0; p < r.passed_over.size(); ++p) {
-        TriedMethod& method = of(r.passed_over[p].choice.info);
+        TriedMethod& method = of(r.passed_over[p].choice);
         ++method.passed_over;
         if (!method.candidate &&
             (!method.outdone_by || r.passed_over[p].ratio < r.passed_over[*method.outdone_by].ratio))
             method.outdone_by = p;
+    }
+    for (TriedMethod& method : all) {
+        if (!method.candidate) continue;
+        const Candidate& best = r.candidates[*method.candidate];
+        method.best           = best;
+        if (best.unfit.empty())
+            method.factor = known(best.worst_ratio());
+        else
+            method.unfit = best.unfit;
     }
     return all;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/recommend/recommendation_record.h"
 #include "umbra/bench/statistics/statistics.h"
 #include "umbra/bench/sweep/metrics.h"
 #include "umbra/bench/sweep/scene_lab.h"
@@ -42,29 +43,22 @@ struct RecommendOptions {
 using Family = std::vector<MethodChoice>;
 [[nodiscard]] std::vector<Family> families(std::span<const MethodChoice> choices);
 
-/// The first view of a setting that is beyond a limit, and so its bound, which is no less than any view.
-struct Beyond {
-    int view             = 0;
-    const Metric* metric = nullptr;
-    std::optional<double> error{};  ///< what that view leaves possible; nothing: it was not judged there
-};
-
-/// One setting that was looked at.
-struct Candidate {
+/// One setting that was looked at. Its errors are in the order of the limits, without a bound where it is not whole;
+/// its cost is by the medians of the phases, or of one run where there are no rounds.
+struct Candidate : CandidateRecord {
     MethodChoice choice;
-    std::vector<Cell> views{};                    ///< cells from view 0 on
-    bool is_whole = false;                        ///< views are all that are chosen on
-    std::vector<std::optional<double>> bounds{};  ///< [limit]; nothing where it is not whole
-    std::optional<Beyond> beyond{};               ///< the first such view; behind it none was needed
-    std::string unfit{};                          ///< why it is no candidate at all; empty where it is one
-    std::vector<double> costs{};                  ///< ms a frame, one a round; empty where it took part in none
-    std::optional<double> price{};                ///< ms a frame by one run, alone
-    std::optional<double> cost{};  ///< by the medians of the phases; of one run where there are no rounds
-    [[nodiscard]] bool within(std::span<const Limit> limits) const;
+    std::vector<Cell> cells{};      ///< of its views, from view 0 on; behind one that is beyond a limit none was needed
+    bool is_whole = false;          ///< its views are all that are chosen on
+    std::string unfit{};            ///< why it is no candidate at all; empty where it is one
+    std::vector<double> costs{};    ///< ms a frame, one a round; empty where it took part in none
+    std::optional<double> price{};  ///< ms a frame by one run, alone
+    [[nodiscard]] bool within() const;
+    /// [limit]
+    [[nodiscard]] const std::optional<double>& bound(std::size_t limit) const { return errors[limit].second.bound; }
     /// A bound, or what it is no less than by the views that are there; nothing where neither is known.
-    [[nodiscard]] std::optional<double> least_bound(std::span<const Limit> limits, std::size_t limit) const;
+    [[nodiscard]] std::optional<double> least_bound(std::size_t limit) const;
     /// The largest of these over its limit; infinite where one is not known.
-    [[nodiscard]] double worst_ratio(std::span<const Limit> limits) const;
+    [[nodiscard]] double worst_ratio() const;
 };
 
 /// Whether further views would compare it with itself.
@@ -75,15 +69,14 @@ struct Candidate {
 /// and a smaller one says nothing.
 struct Rival {
     std::size_t candidate;
-    Ratio ratio;           ///< its cost over that of the recommendation; no pairs: of one run each
-    bool differs = false;  ///< from 1, as far as can be told
-    [[nodiscard]] bool tied() const { return !differs && ratio.has_interval(); }
+    CostRatioRecord ratio;
+    [[nodiscard]] bool tied() const { return !ratio.differs && ratio.low.has_value(); }
 };
 
 /// A setting within the limits in the views that were chosen on, and not in all others that it was tried on.
 struct Dropped {
     std::size_t candidate;
-    Beyond beyond;
+    BeyondRecord beyond;
 };
 
 /// A setting that was not looked at: it costs far more, as prices tell, than a candidate within the limits, and so is not
@@ -95,12 +88,7 @@ struct PassedOver {
 };
 
 /// A method and what was found of its settings.
-struct TriedMethod {
-    const MethodInfo* info  = nullptr;
-    std::size_t settings    = 0;
-    std::size_t looked_at   = 0;
-    std::size_t passed_over = 0;
-    bool within             = false;  ///< one of them is within the limits
+struct TriedMethod : TriedMethodRecord {
     /// The cheapest within the limits, else the one that misses by the smallest factor, else one that is unfit.
     std::optional<std::size_t> candidate{};
     /// Index into passed_over, where none was looked at: the cheapest of them.
@@ -132,7 +120,7 @@ struct Recommendation {
     std::vector<MethodChoice> unasked;    ///< those that the time did not suffice for
     std::vector<Cell> held_out;           ///< cells of the chosen one in views that it was not chosen on; all within.
                                           ///< None of the reference, which they would compare with itself
-    Size size{};                          ///< of the pictures that it was chosen on
+    SizeRecord size{};                    ///< of the pictures that it was chosen on
     double noise_bar = 0;                 ///< as of Turns
 };
 
@@ -159,7 +147,7 @@ struct KeptSetting {
 /// Every method of the candidates, in the order in which the options name them.
 [[nodiscard]] std::vector<TriedMethod> tried_methods(const Recommendation& r, const RecommendOptions& options);
 
-/// In words; as a record: recommendation_record.h.
-[[nodiscard]] std::string recommendation_text(const Recommendation& r, const RecommendOptions& options);
+[[nodiscard]] RecommendationRecord recommendation_record(const Recommendation& r, const RecommendOptions& options);
+[[nodiscard]] std::string recommendation_text(const Recommendation& r, const RecommendOptions& options);  ///< in words
 
 }  // namespace umbra

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/recommend/first_answer.h"
 #include "umbra/bench/run/describe.h"
 
 namespace umbra {
@@ -23,6 +22,7 @@ DESCRIBE(LimitedRecord) {
     of(MEMBER(bound), "what a further view exceeds in one case of twenty; null where it is not known");
 }
 
+/// The first such view: its error is beyond the limit, and so is the bound, which is no less than any view's.
 struct BeyondRecord {
     int view = 0;
     std::string metric{};
@@ -229,8 +229,5 @@ DESCRIBE(RecommendationRecord) {
     of(MEMBER(kept_in), "the folder of cells and times");
     of(MEMBER(first), "the answer that was printed while the search went on");
 }
-
-[[nodiscard]] RecommendationRecord recommendation_record(const Recommendation& r, const RecommendOptions& options);
-[[nodiscard]] FirstAnswerRecord first_answer_record(const FirstAnswer& answer, const RecommendOptions& options);
 
 }  // namespace umbra

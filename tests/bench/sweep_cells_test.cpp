@@ -14,7 +14,7 @@
 #include <type_traits>
 
 #include "made_cell.h"
-#include "umbra/bench/recommend/recommendation_record.h"
+#include "umbra/bench/recommend/recommend.h"
 #include "umbra/bench/run/outcome.h"
 #include "umbra/bench/sweep/bounds.h"
 #include "umbra/bench/sweep/content_key.h"
@@ -752,7 +752,7 @@ TEST(Recommend, TakesTheCheapestWithinTheLimits) {
     ASSERT_TRUE(r.chosen.has_value());
     for (const Candidate& c : r.candidates) {
         ASSERT_TRUE(c.cost.has_value());
-        if (c.within(o.limits)) {
+        if (c.within()) {
             EXPECT_LE(*r.candidates[*r.chosen].cost, *c.cost);
         }
     }
@@ -779,7 +779,7 @@ TEST(Recommend, TakesTheCheapestWithinTheLimits) {
     EXPECT_GE(tight.candidates[*tight.chosen].choice.settings.value("samples"), 64);
     double least = 1;
     for (const Candidate& c : tight.candidates)
-        if (c.cost && c.bounds[0]) least = std::min(least, *c.bounds[0]);
+        if (c.cost && c.bound(0)) least = std::min(least, *c.bound(0));
     ASSERT_FALSE(tight.staircase.empty());
     EXPECT_EQ(tight.staircase.back().error, least);
     for (std::size_t k = 1; k < tight.staircase.size(); ++k) {

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "made_cell.h"
-#include "umbra/bench/recommend/recommendation_record.h"
+#include "umbra/bench/recommend/first_answer.h"
 #include "umbra/bench/sweep/bounds.h"
 #include "umbra/bench/sweep/grid.h"
 #include "umbra/core/base/error.h"
@@ -228,15 +228,15 @@ TEST_F(RecommendByHand, TheCheapestWithinTheLimitsItsRivalsAndTheStaircase) {
     ASSERT_TRUE(r.chosen.has_value());
     EXPECT_EQ(text(r, *r.chosen), "ray_traced");
     EXPECT_EQ(*r.candidates[*r.chosen].cost, 9);
-    EXPECT_NEAR(*r.candidates[*r.chosen].bounds[0], 0.008, 1e-12) << "views that agree leave no doubt";
+    EXPECT_NEAR(*r.candidates[*r.chosen].bound(0), 0.008, 1e-12) << "views that agree leave no doubt";
     EXPECT_FALSE(r.nearest.has_value());
     EXPECT_TRUE(r.undecided.empty());
     EXPECT_TRUE(r.tied.empty());
     ASSERT_TRUE(r.runner_up.has_value());
     EXPECT_EQ(text(r, r.runner_up->candidate), "shadow_volumes");
     EXPECT_NEAR(r.runner_up->ratio.median, 2, 1e-12) << "its cost over the recommendation's";
-    EXPECT_EQ(r.runner_up->ratio.pairs, 6);
-    EXPECT_TRUE(r.runner_up->differs);
+    EXPECT_EQ(r.runner_up->ratio.rounds, 6u);
+    EXPECT_TRUE(r.runner_up->ratio.differs);
     ASSERT_TRUE(r.cheapest.has_value());
     EXPECT_EQ(text(r, r.cheapest->candidate), "shadow_zbuffer");
     EXPECT_NEAR(r.cheapest->ratio.median, 1.0 / 3, 1e-12);
@@ -354,9 +354,9 @@ TEST_F(RecommendByHand, WhatAViewRulesOutIsLookedAtInNoOther) {
     };
     for (const auto& [name, views] :
          {std::pair("filtered_map", 1u), std::pair("scan_line", 1u), std::pair("cascaded_maps", 2u)}) {
-        EXPECT_EQ(of(name)->views.size(), views) << name;
-        EXPECT_EQ(of(name)->bounds[0].has_value(), views == 2) << name;
-        EXPECT_FALSE(of(name)->within(o_.limits));
+        EXPECT_EQ(of(name)->views, views) << name;
+        EXPECT_EQ(of(name)->bound(0).has_value(), views == 2) << name;
+        EXPECT_FALSE(of(name)->within());
         ASSERT_TRUE(of(name)->beyond.has_value()) << name;
         EXPECT_EQ(of(name)->beyond->view, 0);
     }
@@ -519,9 +519,9 @@ TEST_F(RecommendByHand, EdgesThatAreNotFoundAreWithinNoBound) {
     };
     with_edge(0, 7, 0);
     with_edge(1, kUnknown, 100);
-    o_.limits                         = {parse_limit("edge_displacement_px.max=40")};
-    r.candidates.at(*r.chosen).bounds = {12.0};
-    const Json held                   = to_record(recommendation_record(r, o_))["recommendation"]["held_out"];
+    o_.limits                                            = {parse_limit("edge_displacement_px.max=40")};
+    r.candidates.at(*r.chosen).errors.at(0).second.bound = 12;
+    const Json held = to_record(recommendation_record(r, o_))["recommendation"]["held_out"];
     EXPECT_EQ(held["holds"]["edge_displacement_px.max"], 1);
     EXPECT_EQ(held["largest"]["edge_displacement_px.max"], 8);
     const Metric& metric = find_metric("edge_displacement_px.max");
@@ -539,7 +539,7 @@ TEST_F(RecommendByHand, EveryMethodThatWasTriedHasALine) {
     const auto methods     = tried_methods(r, o_);
     ASSERT_EQ(methods.size(), 5u);
     std::map<std::string_view, TriedMethod> by_name;
-    for (const TriedMethod& m : methods) by_name[m.info->name] = m;
+    for (const TriedMethod& m : methods) by_name[m.method] = m;
     EXPECT_EQ(text(r, *by_name["brute_force"].candidate), "brute_force");
     EXPECT_TRUE(by_name["brute_force"].within);
     EXPECT_EQ(by_name["shadow_zbuffer"].settings, 2u);
@@ -572,7 +572,7 @@ TEST_F(RecommendByHand, TheBoundIsJudgedNotTheLargestView) {
     const Recommendation r = recommended({{"ray_traced", {0.008, 0.009}, {0, 0, 0, 1}}});
     EXPECT_FALSE(r.chosen.has_value()) << "both views are within 0.01";
     ASSERT_TRUE(r.nearest.has_value());
-    EXPECT_NEAR(r.candidates[*r.nearest].worst_ratio(o_.limits), 1.6155, 1e-3);
+    EXPECT_NEAR(r.candidates[*r.nearest].worst_ratio(), 1.6155, 1e-3);
     EXPECT_EQ(to_record(recommendation_record(r, o_))["nearest"]["errors"]["rmse"]["largest"], 0.009);
 }
 
@@ -868,14 +868,14 @@ TEST_F(FirstAnswerByHand, IsTheCheapestWithinTheLimits) {
     ASSERT_TRUE(answer);
     EXPECT_EQ(answer->choice.text(), "shadow_zbuffer") << "of 2048 texels";
     EXPECT_EQ(answer->cost, 6);
-    EXPECT_NEAR(answer->bounds.at(0), 0.005, 1e-12) << "views that agree leave no doubt";
-    EXPECT_EQ(answer->size.width, 8);
+    EXPECT_NEAR(answer->bounds.at(0).second, 0.005, 1e-12) << "views that agree leave no doubt";
+    EXPECT_EQ(answer->size.width, 8u);
     EXPECT_EQ(answer->views, 3);
     EXPECT_TRUE(answer->in_time);
     EXPECT_EQ(first_answer_text(*answer, o_),
               "Provisional: shadow_zbuffer, about 6 ms a frame with camera=2,light=1,object=0\n"
               "  rmse at most 0.005, by 3 views of 8 x 5 pixels; the final answer follows.\n");
-    const Json json = to_record(first_answer_record(*answer, o_));
+    const Json json = to_record<FirstAnswerRecord>(*answer);
     EXPECT_EQ(json["method"], "shadow_zbuffer");
     EXPECT_EQ(json["cost"], 6.0);
     EXPECT_EQ(json["views"], 3);

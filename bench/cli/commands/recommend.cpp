@@ -1,5 +1,3 @@
-#include "umbra/bench/recommend/recommendation_record.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
+#include "umbra/bench/recommend/first_answer.h"
 #include "umbra/bench/sweep/grid.h"
 #include "umbra/bench/sweep/metrics.h"
 #include "umbra/bench/sweep/sweep.h"
@@ -69,7 +68,7 @@ int recommend(RecommendLine line, const Common& common) {
     terminal.reset();
     if (line.as_json) {
         RecommendationRecord record = recommendation_record(found, options);
-        if (first) record.first = first_answer_record(*first, options);
+        if (first) record.first = *first;
         print_out("{}", json_text(to_record(record)));
     } else {
         print_out("{}", without_controls(recommendation_text(found, options)));
