@@ -1,7 +1,6 @@
 // The list of methods, and finding one by its name as typed.
 #include <dlfcn.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cstdlib>
 #include <map>
@@ -90,8 +89,7 @@ const Preset* find_preset(const MethodInfo& info, std::string_view name) {
         if (p.name == name) return &p;
         known.emplace_back(p.name);
     }
-    throw UsageError(
-        fmt::format("unknown preset \"{}\" (known: {}){}", name, fmt::join(known, ", "), did_you_mean(name, known)));
+    refuse_unknown_name("unknown preset", name, known);
 }
 
 }  // namespace
@@ -141,13 +139,7 @@ std::string plugin_file(const MethodInfo& method) {
 }
 
 const MethodInfo& find_method(std::string_view name) {
-    std::vector<std::string> known;
-    for (const MethodInfo* m : methods()) {
-        if (m->name == name) return *m;
-        known.emplace_back(m->name);
-    }
-    throw UsageError(
-        fmt::format("unknown method \"{}\" (known: {}){}", name, fmt::join(known, ", "), did_you_mean(name, known)));
+    return *entry_named("unknown method", name, methods(), &MethodInfo::name);
 }
 
 std::unique_ptr<const Method> MethodInfo::make(const Settings& settings) const { return create(settings); }

@@ -2,7 +2,6 @@
 #include "umbra/shadows/settings.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -72,14 +71,8 @@ Settings::Settings(std::span<const Parameter> parameters) : parameters_(paramete
 }
 
 std::size_t Settings::index(std::string_view name) const {
-    std::vector<std::string> known;
-    for (std::size_t k = 0; k < parameters_.size(); ++k) {
-        if (parameters_[k].name == name) return k;
-        known.emplace_back(parameters_[k].name);
-    }
-    throw UsageError(fmt::format("unknown setting \"{}\" (known: {}){}", name,
-                                 known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", ")),
-                                 did_you_mean(name, known)));
+    const Parameter& found = entry_named("unknown setting", name, parameters_, &Parameter::name);
+    return static_cast<std::size_t>(&found - parameters_.data());
 }
 
 void Settings::set(std::string_view name, std::string_view value) {

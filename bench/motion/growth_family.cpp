@@ -1,13 +1,11 @@
 #include "umbra/bench/motion/growth_family.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "umbra/core/base/error.h"
 #include "umbra/core/base/suggest.h"
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/core/scene/primitives.h"
@@ -169,13 +167,7 @@ std::vector<MethodChoice> GrowthFamily::at(const MethodChoice& choice, double x)
 std::span<const GrowthFamily> growth_families() { return kFamilies; }
 
 const GrowthFamily& find_growth_family(const std::string& name) {
-    std::vector<std::string> known;
-    for (const GrowthFamily& family : kFamilies) {
-        if (family.name == name) return family;
-        known.emplace_back(family.name);
-    }
-    throw UsageError(fmt::format("--over: unknown size \"{}\" (known: {}){}", name, fmt::join(known, ", "),
-                                 did_you_mean(name, known)));
+    return entry_named("--over: unknown size", name, kFamilies, &GrowthFamily::name);
 }
 
 PreparedScene prepare_growth(const GrowthFamily& family, double x) {

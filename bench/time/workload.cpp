@@ -29,9 +29,7 @@ double& member(Workload& workload, std::string_view name) {
     if (name == "camera") return workload.camera;
     if (name == "light") return workload.light;
     if (name == "object") return workload.object;
-    const std::vector<std::string> known{"camera", "light", "object"};
-    throw UsageError(fmt::format("workload: unknown event \"{}\" (known: {}){}", name, fmt::join(known, ", "),
-                                 did_you_mean(std::string(name), known)));
+    refuse_unknown_name("workload: unknown event", name, std::vector<std::string>{"camera", "light", "object"});
 }
 
 }  // namespace

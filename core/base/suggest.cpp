@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
+#include "umbra/core/base/error.h"
 
 namespace umbra {
 
@@ -51,6 +51,11 @@ std::string closest(std::string_view name, std::span<const std::string> candidat
 std::string did_you_mean(std::string_view name, std::span<const std::string> candidates) {
     const std::vector<std::string> near = near_matches(name, candidates);
     return near.empty() ? "" : fmt::format("; did you mean {}?", fmt::join(near, " or "));
+}
+
+void refuse_unknown_name(std::string_view what, std::string_view name, std::span<const std::string> known) {
+    const std::string all = known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "));
+    throw UsageError(fmt::format("{} \"{}\" (known: {}){}", what, name, all, did_you_mean(name, known)));
 }
 
 }  // namespace umbra

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "umbra/core/base/error.h"
+
 namespace umbra {
 namespace {
 
@@ -34,6 +36,19 @@ TEST(Suggest, BestFirstAndNoMoreThanAsked) {
     EXPECT_EQ(near_matches("cracks", names, 1), std::vector<std::string>{"cracks"});
     EXPECT_EQ(did_you_mean("crakcs", names), "; did you mean cracks?");
     EXPECT_EQ(did_you_mean("nothing_like_it", names), "");
+}
+
+TEST(Suggest, AnUnknownNameIsRefusedWithThoseThatAreKnown) {
+    const auto refusal = [](const std::vector<std::string>& known) -> std::string {
+        try {
+            return entry_named("unknown command", "lits", known, std::identity());
+        } catch (const UsageError& e) {
+            return e.what();
+        }
+    };
+    EXPECT_EQ(refusal({"lits"}), "lits");
+    EXPECT_EQ(refusal({"list", "diff"}), "unknown command \"lits\" (known: list, diff); did you mean list?");
+    EXPECT_EQ(refusal({}), "unknown command \"lits\" (known: none)");
 }
 
 }  // namespace
