@@ -221,7 +221,7 @@ void write_study_page(const StudyReport& report, const HeadRecord& head, const f
     for (const StudyCurve& curve : report.curves) view["curves"].push_back(curve_view(curve));
     for (const StudySentence& sentence : shown(report.sentences, Shown::on_page))
         view["sentences"].push_back({{"parts", marked(sentence.text)}});
-    write_page(folder, report.page, {report.title}, std::move(view), staged);
+    write_page(folder, report.page, {report.title}, view, staged);
 }
 
 }  // namespace umbra
