@@ -140,7 +140,7 @@ Changes plane_changes(const Image& before, const Image& now, const PreparedScene
 fs::path leave_pictures(const fs::path& pictures, const std::string& golden, const PreparedScene& prepared,
                         const Image& before, const Image& now, const std::vector<ChangedPlane>& changed) {
     if (pictures.empty() || changed.empty()) return {};
-    const fs::path folder = pictures / fmt::format("{}.{}", prepared.scene.name, golden);
+    fs::path folder = pictures / fmt::format("{}.{}", prepared.scene.name, golden);
     fs::remove_all(folder);
     fs::create_directories(folder);
     const auto write = [&](const std::string& name, const Image& picture) {
