@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <functional>
-#include <future>
 #include <map>
 #include <optional>
 #include <set>
@@ -235,10 +234,9 @@ ScenesDone compare_scenes(const std::vector<fs::path>& files, const CompareOptio
 }
 
 Service render_scene(const fs::path& file, const RenderOptions& options) {
-    const MethodChoice choice      = parse_method(options.method);
-    const bool png                 = options.out.extension() == ".png";
-    const std::future<void> images = load_image_library();  // no clock runs
-    const PreparedScene prepared   = prepare_scene(file, options.size, png ? options.pixel_samples : 1, Work::picture);
+    const MethodChoice choice    = parse_method(options.method);
+    const bool png               = options.out.extension() == ".png";
+    const PreparedScene prepared = prepare_scene(file, options.size, png ? options.pixel_samples : 1, Work::picture);
     pass_warnings(prepared.scene, options.warn);
     std::optional<LightId> at;
     MethodRun run{choice};

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <future>
 #include <string>
 
 #include "umbra/core/image/image.h"
@@ -20,10 +19,6 @@ struct LoadedImage {
     /// "pixel aspect ratios"). Defaults are left out: sRGB's colours, the upright picture of its pixels.
     std::map<std::string, std::string> shown_as{};
 };
-
-/// Begins to load OpenImageIO on a thread of its own, so that the 0.4 s pass beside other work; soon ready where it is
-/// loaded. The destructor waits. A failure is thrown by the first function that needs the library.
-[[nodiscard]] std::future<void> load_image_library();
 
 /// Why pixels of the two do not belong together: sizes, windows, and the files' statements about showing them.
 [[nodiscard]] std::vector<std::string> layout_differences(const LoadedImage& a, const LoadedImage& b);

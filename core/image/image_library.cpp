@@ -30,10 +30,6 @@ const ImageLibrary& library() {
 
 }  // namespace
 
-std::future<void> load_image_library() {
-    return std::async(std::launch::async, [] { static_cast<void>(library()); });
-}
-
 std::vector<std::string> layout_differences(const LoadedImage& a, const LoadedImage& b) {
     return library().differences(a, b);
 }
