@@ -756,10 +756,10 @@ TEST(Recommend, TakesTheCheapestWithinTheLimits) {
             EXPECT_LE(*r.candidates[*r.chosen].cost, *c.cost);
         }
     }
-    EXPECT_EQ(o.choices.size(), 5u);
     EXPECT_LT(r.candidates.size(), 5u);
     EXPECT_EQ(r.held_out.size(), 1u);
     const Json json = to_record(recommendation_record(r, o));
+    EXPECT_EQ(json["settings"], (Json{{"looked_at", r.candidates.size()}, {"of", 5}}));
     EXPECT_EQ(json["recommendation"]["method"], r.candidates[*r.chosen].choice.text());
     EXPECT_LE(json["recommendation"]["errors"]["rmse"]["bound"].get<double>(), 0.9);
     EXPECT_GE(json["recommendation"]["errors"]["rmse"]["bound"].get<double>(),
@@ -816,9 +816,9 @@ TEST(Recommend, PassesOverWhatTheReferenceOutdoes) {
     EXPECT_EQ(r.candidates[r.passed_over[0].candidate].choice.text(), "exact");
     EXPECT_GT(r.passed_over[0].ratio, 5);
     EXPECT_EQ(r.candidates.size(), 2u);
-    EXPECT_EQ(o.choices.size(), 3u);
     EXPECT_FALSE(lab.has_cell(o.choices[1], 0));
     const Json json = to_record(recommendation_record(r, o));
+    EXPECT_EQ(json["settings"], (Json{{"looked_at", 2}, {"of", 3}}));
     EXPECT_EQ(json["passed_over"].at(0).at("method"), "shadow_zbuffer:resolution=8192");
     EXPECT_EQ(json["passed_over"].at(0).at("cheaper"), "exact");
     EXPECT_NE(recommendation_text(r, o).find("shadow_zbuffer:resolution=8192  not looked at: one run costs "),
