@@ -18,15 +18,9 @@
 namespace umbra {
 namespace {
 
-constexpr std::array kCommands = {
-#define COMMAND(name, about) Command{#name, about, name##_command},
-#include "umbra/bench/cli/commands.def"
-#undef COMMAND
-};
-
 /// The first word that is no option, empty where that is for CLI11 to say. Throws UsageError where it names no command.
-std::string check_command(int argc, const char* const* argv) {
-    const std::vector<std::string> known = names_of_entries(kCommands);
+std::string check_command(int argc, const char* const* argv, std::span<const Command> commands) {
+    const std::vector<std::string> known = names_of_entries(commands);
     for (int i = 1; i < argc; ++i) {
         std::string word = argv[i];
         if (word == "--help" || word == "-h" || word == "--version") return "";
@@ -71,8 +65,8 @@ bool names_methods(const CLI::App& app, const std::string& command) {
            (has("--methods") || has("--with") || std::ranges::find(kOthers, command) != kOthers.end());
 }
 
-/// Defines the whole command line on an empty `app`; returns the action of each command, in the order of kCommands.
-std::vector<Action> define_commands(CLI::App& app, Common& common) {
+/// Defines the whole command line on an empty `app`; returns the action of each command, in their order.
+std::vector<Action> define_commands(CLI::App& app, Common& common, std::span<const Command> commands) {
     app.description(
         "Umbra compares shadow algorithms: one scene, many methods, one question: which fraction of each light does "
         "each surface point see?");
@@ -94,7 +88,7 @@ std::vector<Action> define_commands(CLI::App& app, Common& common) {
         ->allow_extra_args(false)
         ->trigger_on_parse();
     std::vector<Action> actions;
-    for (const Command& command : kCommands)
+    for (const Command& command : commands)
         actions.push_back(
             command.define(*app.add_subcommand(std::string(command.name), std::string(command.about)), common));
     for (CLI::App* command : app.get_subcommands(nullptr))
@@ -112,14 +106,14 @@ std::vector<Action> define_commands(CLI::App& app, Common& common) {
     return actions;
 }
 
-int parse_and_run(int argc, const char* const* argv, std::string& help) {
+int parse_and_run(int argc, const char* const* argv, std::span<const Command> commands, std::string& help) {
     CLI::App app;
     Common common;
-    const std::vector<Action> actions = define_commands(app, common);
+    const std::vector<Action> actions = define_commands(app, common, commands);
     common.command                    = "umbra";
     for (int i = 1; i < argc; ++i) common.command += fmt::format(" {}", argv[i]);
 
-    const std::string command = check_command(argc, argv);
+    const std::string command = check_command(argc, argv, commands);
     if (names_methods(app, command))
         for (const std::string& problem : add_contenders()) print_error("warning: {}\n", problem);
     try {
@@ -134,21 +128,19 @@ int parse_and_run(int argc, const char* const* argv, std::string& help) {
     const std::string name = app.get_subcommands().front()->get_name();
     help                   = name + " --help";
     refuse_empty_values(*app.get_subcommands().front());
-    for (std::size_t i = 0; i < kCommands.size(); ++i)
-        if (kCommands[i].name == name) return actions[i]();
+    for (std::size_t i = 0; i < commands.size(); ++i)
+        if (commands[i].name == name) return actions[i]();
     return kInternal;
 }
 
 }  // namespace
 
-std::span<const Command> commands() { return kCommands; }
-
-int run_command_line(int argc, const char* const* argv) {
+int run_command_line(int argc, const char* const* argv, std::span<const Command> known) {
     keep_freed_memory();
     prepare_streams();
     std::string help = "--help";
     try {
-        const int code = parse_and_run(argc, argv, help);
+        const int code = parse_and_run(argc, argv, known, help);
         flush_out();
         return code;
     } catch (const OutputClosed&) {

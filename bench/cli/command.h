@@ -32,13 +32,15 @@ struct Command {
     std::string_view name, about;
     Action (*define)(CLI::App& app, const Common& common);
 };
-[[nodiscard]] std::span<const Command> commands();
+[[nodiscard]] std::span<const Command> commands();  ///< all of commands.def
 
-#define COMMAND(name, about) Action name##_command(CLI::App& app, const Common& common);
+#define COMMAND(name, about)                                    \
+    Action name##_command(CLI::App& app, const Common& common); \
+    inline constexpr Command name##_line{#name, about, name##_command};
 #include "umbra/bench/cli/commands.def"
 #undef COMMAND
 
-/// Parses and runs. Prints errors to standard error and returns the exit code; does not throw.
-int run_command_line(int argc, const char* const* argv);
+/// Parses and runs one of `known`. Prints errors to standard error and returns the exit code; does not throw.
+int run_command_line(int argc, const char* const* argv, std::span<const Command> known);
 
 }  // namespace umbra

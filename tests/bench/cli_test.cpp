@@ -826,6 +826,18 @@ TEST_F(Cli, CompareThenReportAnewFromFilesAlone) {
     ASSERT_TRUE(fs::exists(file("out/results.json")));
     ASSERT_EQ(umbra("report " + file("out/sun_on_plane") + " -o " + file("anew")).exit_code, 0);
     EXPECT_TRUE(fs::exists(file("anew/index.html")));
+    // The program that a first `./umbra report` builds has this command alone, and writes the same.
+    const std::string alone = UMBRA_REPORT_PROGRAM;
+    ASSERT_EQ(run(alone + " report " + file("out/sun_on_plane") + " -o " + file("alone")).exit_code, 0);
+    std::size_t pages = 0;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(file("anew"))) {
+        if (entry.path().extension() != ".html") continue;
+        EXPECT_EQ(text_of(entry.path()), text_of(file("alone") / fs::relative(entry.path(), file("anew"))));
+        ++pages;
+    }
+    EXPECT_GT(pages, 0u);
+    EXPECT_EQ(run(alone + " report --help").output, umbra("report --help").output);
+    EXPECT_EQ(run(alone + " compare").exit_code, 64);
 }
 
 TEST_F(Cli, UpTurnsMeshFilesAndSaysWhereThereIsNone) {

@@ -110,4 +110,4 @@ extern "C" std::unique_ptr<const Method> __wrap__ZNK5umbra10MethodInfo4makeERKNS
 
 }  // namespace umbra
 
-int main(int argc, char** argv) { return umbra::run_command_line(argc, argv); }
+int main(int argc, char** argv) { return umbra::run_command_line(argc, argv, umbra::commands()); }
