@@ -15,6 +15,12 @@ namespace {
 /// surface, or one that faces away from the light.
 constexpr double kPoints = 6, kFewestPoints = 60000;  ///< the second: so that limits from 0.01 on share their cells
 
+constexpr double kLongSeconds = 0.5;  ///< of one run at few points: longer ones are not waited for
+
+constexpr double kSecondsOfKept = 1;  ///< of computing further views of what earlier questions have looked at
+
+constexpr double kFarBeyond = 2;  ///< times the limit
+
 constexpr double kLongMs = 500;  ///< of one run on the whole picture, so that nobody waits for a price
 
 bool depends_on_the_size(const Metric& metric) {
@@ -30,27 +36,80 @@ public:
     [[nodiscard]] bool is_over() const { return start_.seconds() >= seconds_; }
     [[nodiscard]] const std::optional<FirstAnswer>& best() const { return best_; }
 
-    /// Of what earlier questions have looked at, up to an answer.
+    /// What earlier questions have looked at: first what they leave to read, then what takes too short to wait for,
+    /// and where nothing is within the limits, what was so at fewer points.
     void look_at_kept(std::span<const Family> families) {
-        for (const KeptSetting& kept : kept_settings(coarse_, whole_, families, options_.workload))
-            if (!kept.choice.info->reference && (is_over() || take_if_within(kept.choice, kept.cost))) return;
+        const std::vector<KeptSetting> kept = kept_settings(coarse_, whole_, families, options_.workload);
+        std::vector<KeptSetting> rest;
+        for (const KeptSetting& k : kept) {
+            if (k.choice.info->reference) continue;
+            if (kept_views(coarse_, k.choice) < kFirstViews)
+                rest.push_back(k);
+            else if (take_if_within(k.choice, k.cost))
+                break;
+        }
+        for (const KeptSetting& k : rest) {
+            if (best_ && k.cost >= best_->cost) break;
+            if (start_.seconds() + kFirstViews * coarse_.spent_on(k.choice) > kSecondsOfKept) continue;
+            if (take_if_within(k.choice, k.cost)) break;
+        }
+        if (best_ || !has_fewer()) return;
+        for (const KeptSetting& k : kept_settings(few_, whole_, families, options_.workload))
+            if (!k.choice.info->reference && is_within_as_kept(few_, k.choice) &&
+                (is_over() || take_if_within(k.choice, k.cost)))
+                return;
     }
 
     /// The next setting of a family: each costs more than those before it, and errs less. What it costs; nothing where
     /// no further one of the family can be the answer.
     [[nodiscard]] std::optional<double> look_at(const MethodChoice& choice) {
-        const std::optional<double> cost = cost_of(choice);
-        if (!cost || (best_ && *cost >= best_->cost) || take_if_within(choice, *cost)) return std::nullopt;
+        const bool is_beyond             = is_far_beyond_as_kept(choice);
+        const std::optional<double> cost = cost_of(choice, is_beyond ? few_ : coarse_);
+        if (!cost || (best_ && *cost >= best_->cost) || (!is_beyond && take_if_within(choice, *cost)))
+            return std::nullopt;
         return cost;
     }
 
 private:
+    /// The views, from view 0 on, that need not be computed; no more than an answer is from.
+    [[nodiscard]] static int kept_views(SceneLab& lab, const MethodChoice& choice) {
+        int views = 0;
+        while (views < kFirstViews && lab.has_cell(choice, views)) ++views;
+        return views;
+    }
+
+    [[nodiscard]] bool is_within_as_kept(SceneLab& lab, const MethodChoice& choice) const {
+        for (int view = 0, views = kept_views(lab, choice); view < views; ++view)
+            if (!is_within(lab.cell(choice, view))) return false;
+        return true;
+    }
+
+    /// At fewer points, by an earlier question: more points change no mean error that much.
+    [[nodiscard]] bool is_far_beyond_as_kept(const MethodChoice& choice) {
+        if (!has_fewer() || choice.info->reference || kept_views(few_, choice) == 0) return false;
+        const Cell cell = few_.cell(choice, 0);
+        return std::ranges::any_of(options_.limits, [&](const Limit& limit) {
+            const auto error = possible_error(*limit.metric, cell);
+            return error && *error > kFarBeyond * limit.most;
+        });
+    }
+
+    /// In one view.
+    [[nodiscard]] bool is_within(const Cell& cell) const {
+        if (!why_unfit({&cell, 1}).empty()) return false;
+        return std::ranges::all_of(options_.limits, [&](const Limit& limit) {
+            const auto error = possible_error(*limit.metric, cell);
+            return error && *error <= limit.most;
+        });
+    }
+
     /// By one run on the whole picture, where one at few points does not say already that it is dearer; from that one
     /// where the other would take too long.
-    [[nodiscard]] std::optional<double> cost_of(const MethodChoice& choice) {
-        const std::optional<RunTimes> few = coarse_.price(choice);
+    [[nodiscard]] std::optional<double> cost_of(const MethodChoice& choice, SceneLab& small) {
+        if (!choice.info->reference && small.takes_longer(choice, kLongSeconds)) return std::nullopt;
+        const std::optional<RunTimes> few = small.price(choice);
         if (!few) return std::nullopt;
-        const double more = more_points(coarse_, whole_);
+        const double more = more_points(small, whole_);
         if (more * few->all() > kLongMs) return price_ms(options_.workload, *few, more);
         if (const double least = price_ms(options_.workload, *few); best_ && least >= best_->cost) return least;
         const std::optional<RunTimes> all = whole_.price(choice);
@@ -64,11 +123,7 @@ private:
             if (is_the_reference(choice, cells)) break;
             if (view > 0 && is_over()) return false;
             cells.push_back(coarse_.cell(choice, view));
-            if (!why_unfit({&cells.back(), 1}).empty()) return false;
-            for (const Limit& limit : options_.limits) {
-                const auto error = possible_error(*limit.metric, cells.back());
-                if (!error || *error > limit.most) return false;
-            }
+            if (!is_within(cells.back())) return false;
         }
         FirstAnswer answer{{.method = choice.text(), .cost = cost}, choice};
         for (const Limit& limit : options_.limits) {
@@ -80,7 +135,11 @@ private:
         return true;
     }
 
+    /// Whether questions with looser limits were answered by smaller pictures.
+    [[nodiscard]] bool has_fewer() const { return more_points(few_, coarse_) > 1; }
+
     SceneLab &coarse_, &whole_;
+    SceneLab few_{coarse_, first_size(whole_.size(), {})};
     const RecommendOptions& options_;
     double seconds_;
     Stopwatch start_;

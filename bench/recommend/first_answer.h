@@ -26,8 +26,10 @@ inline constexpr int kFirstViews = 3;
 /// `coarse` is the scene of `whole` at first_size; costs are those of `whole`. The reference is looked at first, then
 /// of all families the settings from the cheapest on, always where the one before was cheapest; a family ends with one
 /// that is within the limits, or dearer than the cheapest that is. Where settings that earlier questions have looked at
-/// are within the limits, the answer is the cheapest of those, by its cost in small pictures. Begins with nothing after `seconds`. Nothing where
-/// no setting is within the limits.
+/// are within the limits, the answer is the cheapest of those, by its cost in small pictures; those that would take long
+/// to look at again are left out, and where the limit is tighter, what held in smaller pictures is looked at first. A
+/// setting whose run takes long is left out. Begins with nothing after `seconds`. Nothing where no setting is within the
+/// limits.
 [[nodiscard]] std::optional<FirstAnswer> first_answer(SceneLab& coarse, SceneLab& whole,
                                                       const RecommendOptions& options, double seconds);
 

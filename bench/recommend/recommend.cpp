@@ -43,6 +43,8 @@ constexpr double kStep = 0.8, kStepsPart = 0.2, kFewestStepsSeconds = 1, kMostSt
 // Of the time for rounds, where one setting alone may be the answer, so that nothing is ranked by them.
 constexpr double kOfOne = 0.5;
 
+constexpr double kQuickSeconds = 1.5;  ///< of one run: what takes longer comes behind all others
+
 /// So many times as long is looked for a setting that is within the limits at all and is not the reference.
 constexpr double kPatience = 4;
 
@@ -66,7 +68,8 @@ public:
     void look_at_families() {
         struct Line {
             std::span<const MethodChoice> left;
-            bool is_new   = true;  ///< none of its family was looked at
+            bool is_new   = true;   ///< none of its family was looked at
+            bool is_long  = false;  ///< a run takes longer than kQuickSeconds
             double ran_ms = 0;  ///< the setting before the first of these, or the fastest of the method where it is new
         };
         std::vector<Line> lines;
@@ -76,23 +79,36 @@ public:
         const auto method_of = [](const Line& l) { return l.left.front().info; };
         const Stopwatch start;
         const double before = result_.candidates.empty() ? look_at_kept() : 0;  // behind a drop: anew
-        if (options_.first && known(*options_.first) == kNone) look(*options_.first);
+        if (options_.first && known(*options_.first) == kNone) {
+            const Stopwatch begin;
+            look(*options_.first);
+            small_.spend_on(*options_.first, begin.seconds());  // so that another question knows it
+        }
         while (!lines.empty()) {
             const auto line = std::ranges::min_element(
-                lines, {}, [&](const Line& l) { return std::pair(!method_of(l)->reference, l.ran_ms); });
+                lines, {}, [&](const Line& l) { return std::tuple(!method_of(l)->reference, l.is_long, l.ran_ms); });
             const std::span<const MethodChoice> left = line->left;
             const Stopwatch begin;
-            const std::size_t k = known(left.front());
-            const bool is_late  = has_cheap_answer() ? before + start.seconds() > options_.seconds
-                                                     : start.seconds() > kPatience * options_.seconds;
-            bool goes_on        = false;
+            const std::size_t k    = known(left.front());
+            const double time_left = has_cheap_answer() ? options_.seconds - before - start.seconds()
+                                                        : kPatience * options_.seconds - start.seconds();
+            const bool is_late     = time_left < 0;
+            const double most      = line->is_long ? std::max(time_left, kQuickSeconds) : kQuickSeconds;
+            bool goes_on           = false;
             if (k == kNone && is_late) {
                 result_.unasked.insert(result_.unasked.end(), left.begin(), left.end());
+            } else if (k == kNone && !method_of(*line)->reference && small_.takes_longer(left.front(), most)) {
+                if (line->is_long) {
+                    result_.unasked.insert(result_.unasked.end(), left.begin(), left.end());
+                } else {
+                    for (Line& other : lines) other.is_long = other.is_long || method_of(other) == method_of(*line);
+                    goes_on = true;
+                }
             } else if (const auto by = passed_over_by(left.front())) {
                 for (const MethodChoice& choice : left)  // each costs more than those before it
                     result_.passed_over.push_back({choice, by->candidate, by->ratio});
             } else if (!is_answer(k == kNone ? look(left.front()) : k) && left.size() > 1) {
-                *line = {left.subspan(1), false, ran_ms(left.front())};
+                *line = {left.subspan(1), false, line->is_long, ran_ms(left.front())};
                 for (Line& other : lines)
                     if (other.is_new && method_of(other) == method_of(*line))
                         other.ran_ms = other.ran_ms > 0 ? std::min(other.ran_ms, line->ran_ms) : line->ran_ms;

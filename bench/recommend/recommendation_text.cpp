@@ -137,6 +137,8 @@ std::string methods_in_words(const Recommendation& r, const RecommendOptions& op
             name                = p.choice.text();
             what = fmt::format("not looked at: one run costs {:.2g} times as much as one of {}, or more", p.ratio,
                                r.candidates[p.candidate].method);
+        } else if (std::ranges::any_of(r.unasked, [&](const MethodChoice& c) { return c.info->name == m.method; })) {
+            what = "not looked at in time";
         }
         widest = std::max(widest, name.size());
         lines.emplace_back(std::move(name), std::move(what));

@@ -230,7 +230,14 @@ MethodRun CellView::run(const MethodChoice& choice, std::optional<LightId>& at) 
     return run;
 }
 
-std::optional<RunTimes> CellView::times_of_one_run(const MethodChoice& choice, bool anew) {
+std::optional<RunTimes> CellView::times_of_one_run(const MethodChoice& choice, bool anew, double seconds) {
+    struct Restored {
+        Budget& now;
+        Budget before = now;
+        ~Restored() { now = before; }
+    } budget{options_.budget};
+    const bool is_less = seconds < budget.before.seconds;
+    if (is_less) budget.now.seconds = seconds;
     const std::string which = all_settings(choice);
     std::optional<LightId> at;
     try {
@@ -243,6 +250,10 @@ std::optional<RunTimes> CellView::times_of_one_run(const MethodChoice& choice, b
         return times;
     } catch (const InputError&) {
         throw;
+    } catch (const CutShort&) {
+        work_.reset();
+        if (is_less) throw;
+        return std::nullopt;
     } catch (...) {
         work_.reset();
         return std::nullopt;

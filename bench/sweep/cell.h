@@ -89,7 +89,9 @@ public:
     [[nodiscard]] Cell compute(const MethodChoice& choice);
     /// Times of one run of all phases, alone: of the one that `compute` compared, or of one now, which the next `compute`
     /// of this setting compares; `anew`: of one now in any case. View 0. Nothing where the setting does not serve, or fails.
-    [[nodiscard]] std::optional<RunTimes> times_of_one_run(const MethodChoice& choice, bool anew = false);
+    /// Throws CutShort where the run takes longer than `seconds`, which are less than its budget.
+    [[nodiscard]] std::optional<RunTimes> times_of_one_run(const MethodChoice& choice, bool anew = false,
+                                                           double seconds = std::numeric_limits<double>::infinity());
     /// Whether neither the method nor the truth was cut short by a budget, which no key has, in the last computed cell.
     [[nodiscard]] bool is_whole() const { return is_whole_; }
 

@@ -38,11 +38,11 @@ struct KeptTimes {
 };
 DESCRIBE(KeptTimes) { MEMBERS(key, times, turns); }
 
-struct KeptSpent {
+struct KeptSeconds {  // spent on a setting, or less than one run of it takes
     std::string key{};
     double seconds = 0;
 };
-DESCRIBE(KeptSpent) { MEMBERS(key, seconds); }
+DESCRIBE(KeptSeconds) { MEMBERS(key, seconds); }
 
 struct KeptReference {
     std::string key{};
@@ -112,6 +112,22 @@ double TimedTogether::noise_bar() const {
     return turns && turns->noise_bar ? *turns->noise_bar : std::numeric_limits<double>::infinity();
 }
 
+bool SceneLab::takes_longer(const MethodChoice& choice, double seconds) {
+    const std::string key = machine_key("price", choice), longer = machine_key("longer", choice);
+    if (is_fresh(key) && store_.has(key)) return false;
+    if (const auto found = is_fresh(longer) ? store_.find<KeptSeconds>(longer) : std::nullopt)
+        if (found->seconds >= seconds) return true;
+    if (options_.progress) options_.progress(fmt::format("price: {}", choice.text()));
+    try {
+        static_cast<void>(view(0).times_of_one_run(choice, false, seconds));
+    } catch (const CutShort&) {
+        store_.keep(KeptSeconds{longer, seconds});
+        measured_here_.insert(longer);
+        return true;
+    }
+    return false;
+}
+
 std::optional<RunTimes> SceneLab::price(const MethodChoice& choice, int runs) {
     const std::string key = machine_key("price", choice);
     std::optional<RunTimes> price;
@@ -135,13 +151,13 @@ std::optional<RunTimes> SceneLab::price(const MethodChoice& choice, int runs) {
 
 double SceneLab::spent_on(const MethodChoice& choice) {
     const std::string key = machine_key("spent", choice);
-    const auto found      = is_fresh(key) ? store_.find<KeptSpent>(key) : std::nullopt;
+    const auto found      = is_fresh(key) ? store_.find<KeptSeconds>(key) : std::nullopt;
     return found ? found->seconds : 0;
 }
 
 void SceneLab::spend_on(const MethodChoice& choice, double seconds) {
     const std::string key = machine_key("spent", choice);
-    store_.keep(KeptSpent{key, spent_on(choice) + seconds});
+    store_.keep(KeptSeconds{key, spent_on(choice) + seconds});
     measured_here_.insert(key);
 }
 

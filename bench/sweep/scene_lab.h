@@ -53,6 +53,10 @@ public:
     /// found where runs on this machine have paid it. Nothing where the setting does not serve, or failed.
     [[nodiscard]] std::optional<RunTimes> price(const MethodChoice& choice, int runs = 1);
 
+    /// Whether one run of a setting takes longer than so many seconds, behind which it is cut short. Otherwise the run is
+    /// its price.
+    [[nodiscard]] bool takes_longer(const MethodChoice& choice, double seconds);
+
     /// Seconds that were spent on looking at a setting, in this run and in those before, as their callers have said.
     [[nodiscard]] double spent_on(const MethodChoice& choice);
     void spend_on(const MethodChoice& choice, double seconds);
@@ -69,7 +73,7 @@ public:
     /// Prices and times that the store has already are measured anew.
     void measure_anew() { anew_ = true; }
 
-    /// The key of what was measured on this machine: `kind` is "time", "price" or "spent".
+    /// The key of what was measured on this machine: `kind` is "time", "price", "longer" or "spent".
     [[nodiscard]] std::string machine_key(const std::string& kind, const MethodChoice& choice);
 
 private:
