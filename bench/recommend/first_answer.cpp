@@ -15,13 +15,11 @@ namespace {
 /// surface, or one that faces away from the light.
 constexpr double kPoints = 6, kFewestPoints = 60000;  ///< the second: so that limits from 0.01 on share their cells
 
-constexpr double kLongSeconds = 0.5;  ///< of one run at few points: longer ones are not waited for
-
 constexpr double kSecondsOfKept = 1;  ///< of computing further views of what earlier questions have looked at
 
 constexpr double kFarBeyond = 2;  ///< times the limit
 
-constexpr double kLongMs = 500;  ///< of one run on the whole picture, so that nobody waits for a price
+constexpr double kLongMs = 500;  ///< of one run, at few points or at all: nobody waits for a longer one
 
 bool depends_on_the_size(const Metric& metric) {
     return metric.name != "rmse" && metric.name != "mae" && metric.name != "image_rmse";
@@ -55,7 +53,7 @@ public:
         }
         if (best_ || !has_fewer()) return;
         for (const KeptSetting& k : kept_settings(few_, whole_, families, options_.workload))
-            if (!k.choice.info->reference && is_within_as_kept(few_, k.choice) &&
+            if (!k.choice.info->reference && is_within_as_kept(k.choice) &&
                 (is_over() || take_if_within(k.choice, k.cost)))
                 return;
     }
@@ -78,9 +76,10 @@ private:
         return views;
     }
 
-    [[nodiscard]] bool is_within_as_kept(SceneLab& lab, const MethodChoice& choice) const {
-        for (int view = 0, views = kept_views(lab, choice); view < views; ++view)
-            if (!is_within(lab.cell(choice, view))) return false;
+    /// At fewer points, in each view that an earlier question has looked at.
+    [[nodiscard]] bool is_within_as_kept(const MethodChoice& choice) {
+        for (int view = 0, views = kept_views(few_, choice); view < views; ++view)
+            if (!is_within(few_.cell(choice, view))) return false;
         return true;
     }
 
@@ -90,7 +89,7 @@ private:
         const Cell cell = few_.cell(choice, 0);
         return std::ranges::any_of(options_.limits, [&](const Limit& limit) {
             const auto error = possible_error(*limit.metric, cell);
-            return error && *error > kFarBeyond * limit.most;
+            return !depends_on_the_size(*limit.metric) && error && *error > kFarBeyond * limit.most;
         });
     }
 
@@ -106,7 +105,7 @@ private:
     /// By one run on the whole picture, where one at few points does not say already that it is dearer; from that one
     /// where the other would take too long.
     [[nodiscard]] std::optional<double> cost_of(const MethodChoice& choice, SceneLab& small) {
-        if (!choice.info->reference && small.takes_longer(choice, kLongSeconds)) return std::nullopt;
+        if (!choice.info->reference && small.takes_longer(choice, kLongMs / 1000)) return std::nullopt;
         const std::optional<RunTimes> few = small.price(choice);
         if (!few) return std::nullopt;
         const double more = more_points(small, whole_);

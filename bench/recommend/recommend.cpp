@@ -94,16 +94,14 @@ public:
                                                         : kPatience * options_.seconds - start.seconds();
             const bool is_late     = time_left < 0;
             const double most      = line->is_long ? std::max(time_left, kQuickSeconds) : kQuickSeconds;
-            bool goes_on           = false;
-            if (k == kNone && is_late) {
+            const bool is_cut =
+                k == kNone && !is_late && !method_of(*line)->reference && small_.takes_longer(left.front(), most);
+            bool goes_on = false;
+            if (k == kNone && (is_late || (is_cut && line->is_long))) {
                 result_.unasked.insert(result_.unasked.end(), left.begin(), left.end());
-            } else if (k == kNone && !method_of(*line)->reference && small_.takes_longer(left.front(), most)) {
-                if (line->is_long) {
-                    result_.unasked.insert(result_.unasked.end(), left.begin(), left.end());
-                } else {
-                    for (Line& other : lines) other.is_long = other.is_long || method_of(other) == method_of(*line);
-                    goes_on = true;
-                }
+            } else if (is_cut) {
+                for (Line& other : lines) other.is_long = other.is_long || method_of(other) == method_of(*line);
+                goes_on = true;
             } else if (const auto by = passed_over_by(left.front())) {
                 for (const MethodChoice& choice : left)  // each costs more than those before it
                     result_.passed_over.push_back({choice, by->candidate, by->ratio});

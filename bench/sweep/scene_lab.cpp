@@ -114,7 +114,7 @@ double TimedTogether::noise_bar() const {
 
 bool SceneLab::takes_longer(const MethodChoice& choice, double seconds) {
     const std::string key = machine_key("price", choice), longer = machine_key("longer", choice);
-    if (is_fresh(key) && store_.has(key)) return false;
+    if (is_fresh(key) && store_.has(key)) return price(choice)->all() > 1000 * seconds;
     if (const auto found = is_fresh(longer) ? store_.find<KeptSeconds>(longer) : std::nullopt)
         if (found->seconds >= seconds) return true;
     if (options_.progress) options_.progress(fmt::format("price: {}", choice.text()));

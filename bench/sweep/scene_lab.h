@@ -53,8 +53,8 @@ public:
     /// found where runs on this machine have paid it. Nothing where the setting does not serve, or failed.
     [[nodiscard]] std::optional<RunTimes> price(const MethodChoice& choice, int runs = 1);
 
-    /// Whether one run of a setting takes longer than so many seconds, behind which it is cut short. Otherwise the run is
-    /// its price.
+    /// Whether one run of a setting takes longer than so many seconds: by its price where that is known, otherwise by a
+    /// run that is cut short behind them, and is its price where it is not.
     [[nodiscard]] bool takes_longer(const MethodChoice& choice, double seconds);
 
     /// Seconds that were spent on looking at a setting, in this run and in those before, as their callers have said.

@@ -510,6 +510,49 @@ TEST_F(RecommendByHand, WhatEarlierQuestionsLookedAtIsKnownAndItsTimeIsSpent) {
     EXPECT_EQ(anew.spent_on(rays), 0);
 }
 
+std::vector<MadeUp> first_runs_long() {
+    const std::vector<double> good{0.001, 0.001, 0.001, 0.001};
+    return {{.text = "atherton_weiler", .rmse = good, .ms = {9000, 0, 0, 2}},
+            {.text = "shadow_zbuffer", .rmse = {0.02, 0.02}, .ms = {0, 0, 0, 1}},
+            {.text = "ray_traced", .rmse = good, .ms = {0, 0, 0, 4}}};
+}
+
+/// A setting whose run takes over 1.5 s.
+TEST_F(RecommendByHand, WhatRunsLongComesLast) {
+    o_.workload            = parse_workload("camera=60,light=0,object=0");
+    o_.seconds             = 60;
+    const Recommendation r = recommended(first_runs_long());
+    ASSERT_EQ(r.candidates.size(), 3u);
+    EXPECT_EQ(text(r, 2), "atherton_weiler");
+    ASSERT_TRUE(r.chosen.has_value());
+    EXPECT_EQ(text(r, *r.chosen), "atherton_weiler") << "no frame of this workload pays its build";
+}
+
+TEST_F(RecommendByHand, WhatRunsLongerThanTheTimeThatIsLeftIsNotAsked) {
+    o_.seconds             = 5;
+    const Recommendation r = recommended(first_runs_long());
+    ASSERT_TRUE(r.chosen.has_value());
+    EXPECT_EQ(text(r, *r.chosen), "ray_traced");
+    ASSERT_EQ(r.unasked.size(), 1u);
+    EXPECT_EQ(r.unasked[0].text(), "atherton_weiler");
+    const std::string words = recommendation_text(r, o_);
+    EXPECT_NE(words.find("atherton_weiler  not looked at in time\n"), std::string::npos) << words;
+}
+
+TEST_F(RecommendByHand, ARunThatTakesLongIsCutShortAndThatIsKept) {
+    const MethodChoice rays = parse_method("ray_traced"), maps = parse_method("shadow_zbuffer");
+    EXPECT_TRUE(lab_.takes_longer(rays, 0));
+    SceneLab again(std::filesystem::path(UMBRA_SCENES) / "umbra_penumbra.json", {.size = {16, 9}}, store_);
+    EXPECT_TRUE(store_.has(again.machine_key("longer", rays)));
+    EXPECT_FALSE(store_.has(again.machine_key("price", rays))) << "a part of a run is no price";
+    EXPECT_TRUE(again.takes_longer(rays, 0));
+    EXPECT_FALSE(again.takes_longer(rays, 1000)) << "more time than it was cut short behind";
+    EXPECT_TRUE(again.price(rays).has_value()) << "no budget stays behind";
+    keep_in(lab_, {.text = "shadow_zbuffer", .rmse = {}, .ms = {9000, 0, 0, 2}});
+    EXPECT_TRUE(lab_.takes_longer(maps, 9));
+    EXPECT_FALSE(lab_.takes_longer(maps, 10));
+}
+
 /// Edges of the second further view lie 8 pixels off or farther, however large the bound is.
 TEST_F(RecommendByHand, EdgesThatAreNotFoundAreWithinNoBound) {
     Recommendation r     = recommended(four_methods());
@@ -906,6 +949,42 @@ TEST_F(FirstAnswerByHand, IsFromAnEarlierQuestionWhereOneKnowsIt) {
     EXPECT_EQ(answer->choice.text(), "ray_traced");
     EXPECT_NEAR(answer->cost, 11 / 2.0 * (16 * 9) / (8 * 5), 1e-9) << "by the small picture";
     EXPECT_FALSE(answer->in_time);
+}
+
+/// It does not wait for further views of what took long before, though that costs less.
+TEST_F(FirstAnswerByHand, LeavesOutWhatTookLongToLookAt) {
+    add("ray_traced", kWithin, 11);
+    add("radiosity", {0.005}, 2);
+    coarse_.spend_on(parse_method("ray_traced"), 1);
+    coarse_.spend_on(parse_method("radiosity"), 5);
+    EXPECT_EQ(first()->choice.text(), "ray_traced");
+}
+
+/// A tighter limit needs larger pictures: what was within it in the smaller ones is looked at first, and what was far
+/// beyond it not at all.
+TEST_F(FirstAnswerByHand, OfATighterLimitBeginsWithWhatHeldAtFewerPoints) {
+    SceneLab whole(lab_, {400, 300}), few(lab_, first_size({400, 300}, {}));
+    const auto known = [&](const char* text, double rmse, double ms) {
+        keep_in(few, {.text = text, .rmse = {rmse}, .ms = {0, 0, 0, ms}});
+        keep_in(whole, {.text = text, .rmse = {}, .ms = {0, 0, 0, ms}});
+        o_.choices.push_back(parse_method(text));
+    };
+    const auto answer_for_whole = [&] {
+        const auto answer = first_answer(whole, whole, o_, 100);
+        EXPECT_EQ(whole.computed(), 0u) << "everything was made up";
+        return answer;
+    };
+    o_.limits = {parse_limit("rmse=0.003")};
+    known("filtered_map", 0.02, 1);
+    EXPECT_FALSE(answer_for_whole()) << "far beyond";
+    known("ray_traced", 0.002, 5);
+    few.spend_on(parse_method("ray_traced"), 1);
+    keep_in(whole, {.text = "ray_traced", .rmse = std::vector<double>(3, 0.002), .ms = {0, 0, 0, 5}});
+    o_.choices.push_back(parse_method("scan_line"));  // nothing is known of it
+    const auto answer = answer_for_whole();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->choice.text(), "ray_traced");
+    EXPECT_FALSE(answer->in_time) << "nothing else was begun";
 }
 
 TEST_F(FirstAnswerByHand, IsFromFewPointsWhereTheSizeOfThePictureChangesNoError) {
