@@ -970,7 +970,7 @@ TEST_F(FirstAnswerByHand, OfATighterLimitBeginsWithWhatHeldAtFewerPoints) {
         o_.choices.push_back(parse_method(text));
     };
     const auto answer_for_whole = [&] {
-        const auto answer = first_answer(whole, whole, o_, 100);
+        auto answer = first_answer(whole, whole, o_, 100);
         EXPECT_EQ(whole.computed(), 0u) << "everything was made up";
         return answer;
     };
