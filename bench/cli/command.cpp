@@ -9,7 +9,7 @@
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/streams.h"
 #include "umbra/bench/contenders/contender.h"
-#include "umbra/bench/run/describe.h"
+#include "umbra/bench/lab/describe.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/memory.h"
 #include "umbra/core/base/parallel.h"

@@ -12,7 +12,7 @@ class App;
 
 namespace umbra {
 
-/// `diff` exits with its verdict (bench/diff/diff.h), 0 to 4.
+/// `diff` exits with its verdict (bench/gate/diff.h), 0 to 4.
 enum Exit : int { kDone = 0, kNo = 1, kUnreadable = 4, kInternal = 5, kUsage = 64 };
 
 /// Options of all commands.

@@ -5,13 +5,13 @@
 #include <filesystem>
 #include <string>
 
+#include "umbra/bench/base/files.h"
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
-#include "umbra/bench/course/apart.h"
-#include "umbra/bench/course/grade_page.h"
-#include "umbra/bench/course/judge.h"
-#include "umbra/bench/out/files.h"
+#include "umbra/bench/report/course/apart.h"
+#include "umbra/bench/report/course/grade_page.h"
+#include "umbra/bench/report/course/judge.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {

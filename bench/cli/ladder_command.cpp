@@ -11,16 +11,16 @@
 #include <span>
 #include <vector>
 
+#include "umbra/bench/base/files.h"
+#include "umbra/bench/base/own_files.h"
+#include "umbra/bench/base/staged_folder.h"
 #include "umbra/bench/cli/names.h"
+#include "umbra/bench/lab/chosen.h"
+#include "umbra/bench/lab/steps.h"
 #include "umbra/bench/ladders/ladder_file.h"
 #include "umbra/bench/ladders/ladder_page.h"
 #include "umbra/bench/ladders/ladder_record.h"
 #include "umbra/bench/ladders/ladder_run.h"
-#include "umbra/bench/out/files.h"
-#include "umbra/bench/out/own_files.h"
-#include "umbra/bench/out/staged_folder.h"
-#include "umbra/bench/run/chosen.h"
-#include "umbra/bench/run/steps.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/lab/budget.h"
 #include "umbra/bench/ladders/ladder_record.h"
-#include "umbra/bench/run/budget.h"
 
 namespace umbra {
 

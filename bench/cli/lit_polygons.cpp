@@ -9,7 +9,7 @@
 #include <memory>
 #include <numeric>
 
-#include "umbra/bench/out/files.h"
+#include "umbra/bench/base/files.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/shadows/atherton/atherton_weiler.h"
 

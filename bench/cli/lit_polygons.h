@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "umbra/bench/run/describe.h"
+#include "umbra/bench/lab/describe.h"
 
 namespace umbra {
 

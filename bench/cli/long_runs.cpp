@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
+#include "umbra/bench/base/field.h"
+#include "umbra/bench/base/files.h"
+#include "umbra/bench/base/own_files.h"
+#include "umbra/bench/base/staged_files.h"
 #include "umbra/bench/cli/options.h"
 #include "umbra/bench/ladders/ladder_record.h"
-#include "umbra/bench/out/files.h"
-#include "umbra/bench/out/own_files.h"
-#include "umbra/bench/out/staged_files.h"
-#include "umbra/bench/record/field.h"
 #include "umbra/bench/report/report.h"
-#include "umbra/bench/trade/trade_page.h"
+#include "umbra/bench/sweep/trade_page.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {

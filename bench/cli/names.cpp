@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <functional>
 
+#include "umbra/bench/lab/chosen.h"
 #include "umbra/bench/ladders/ladder_file.h"
-#include "umbra/bench/run/chosen.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/number_from.h"
 #include "umbra/core/base/paths.h"

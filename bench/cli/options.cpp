@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "umbra/bench/run/antialias.h"
+#include "umbra/bench/lab/antialias.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/number_from.h"
 

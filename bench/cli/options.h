@@ -14,9 +14,9 @@
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/streams.h"
 #include "umbra/bench/cli/terminal.h"
-#include "umbra/bench/run/budget.h"
-#include "umbra/bench/run/describe.h"
-#include "umbra/bench/run/prepare.h"
+#include "umbra/bench/lab/budget.h"
+#include "umbra/bench/lab/describe.h"
+#include "umbra/bench/lab/prepare.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/shadows/method.h"
 

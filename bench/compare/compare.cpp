@@ -9,6 +9,9 @@
 #include <span>
 #include <utility>
 
+#include "umbra/bench/base/files.h"
+#include "umbra/bench/base/staged_files.h"
+#include "umbra/bench/base/staged_folder.h"
 #include "umbra/bench/compare/explained_points.h"
 #include "umbra/bench/compare/exr_layers.h"
 #include "umbra/bench/compare/fine_picture.h"
@@ -16,13 +19,10 @@
 #include "umbra/bench/compare/method_files.h"
 #include "umbra/bench/compare/record.h"
 #include "umbra/bench/compare/values_script.h"
-#include "umbra/bench/out/files.h"
-#include "umbra/bench/out/staged_files.h"
-#include "umbra/bench/out/staged_folder.h"
-#include "umbra/bench/run/chosen.h"
-#include "umbra/bench/run/outcome.h"
-#include "umbra/bench/run/steps.h"
-#include "umbra/bench/time/turns.h"
+#include "umbra/bench/lab/chosen.h"
+#include "umbra/bench/lab/outcome.h"
+#include "umbra/bench/lab/steps.h"
+#include "umbra/bench/lab/turns.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/io/scene_io.h"

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/run/prepare.h"
-#include "umbra/bench/run/reference.h"
-#include "umbra/bench/run/results.h"
-#include "umbra/bench/run/run.h"
+#include "umbra/bench/lab/prepare.h"
+#include "umbra/bench/lab/reference.h"
+#include "umbra/bench/lab/results.h"
+#include "umbra/bench/lab/run.h"
 
 namespace umbra {
 
@@ -44,7 +44,7 @@ struct CompareOptions {
 
 /// Compares on one scene and writes OUT/<scene>/: results.json, EXRs and PNGs. The folder is written beside and moved
 /// into place; an older result stays whole until then. Each method runs once for its answers, and then all of them in
-/// turns for their times (bench/time/turns.h), of which that run is the first. A method that throws or breaks its
+/// turns for their times (bench/lab/turns.h), of which that run is the first. A method that throws or breaks its
 /// contract has an entry that says so (`failed`), and the others go on; a reference that throws is replaced, unless the
 /// options name it. Returns the record that it wrote. Throws InputError, UsageError, and what a reference throws that
 /// cannot be replaced.

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "umbra/bench/run/outcome.h"
-#include "umbra/bench/run/results.h"
+#include "umbra/bench/lab/outcome.h"
+#include "umbra/bench/lab/results.h"
 
 namespace umbra {
 

@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "umbra/bench/run/outcome.h"
-#include "umbra/bench/run/run.h"
+#include "umbra/bench/lab/outcome.h"
+#include "umbra/bench/lab/run.h"
 #include "umbra/core/image/image.h"
 
 namespace umbra {

@@ -1,6 +1,6 @@
 #include "umbra/bench/compare/fine_picture.h"
 
-#include "umbra/bench/run/antialias.h"
+#include "umbra/bench/lab/antialias.h"
 #include "umbra/core/render/shade.h"
 
 namespace umbra {

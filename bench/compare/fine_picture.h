@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "umbra/bench/compare/image_figures.h"
-#include "umbra/bench/run/prepare.h"
-#include "umbra/bench/run/run.h"
+#include "umbra/bench/lab/prepare.h"
+#include "umbra/bench/lab/run.h"
 
 namespace umbra {
 

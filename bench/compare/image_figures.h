@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "umbra/bench/run/results.h"
+#include "umbra/bench/lab/results.h"
 #include "umbra/core/image/metrics.h"
 #include "umbra/core/render/points.h"
 #include "umbra/core/render/visibility.h"

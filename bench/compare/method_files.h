@@ -8,9 +8,9 @@
 
 #include "umbra/bench/compare/fine_picture.h"
 #include "umbra/bench/compare/image_figures.h"
-#include "umbra/bench/run/outcome.h"
-#include "umbra/bench/run/prepare.h"
-#include "umbra/bench/run/run.h"
+#include "umbra/bench/lab/outcome.h"
+#include "umbra/bench/lab/prepare.h"
+#include "umbra/bench/lab/run.h"
 
 namespace umbra {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "umbra/bench/statistics/statistics.h"
+#include "umbra/bench/base/statistics.h"
 #include "umbra/core/base/parallel.h"
 
 namespace umbra {

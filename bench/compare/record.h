@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "umbra/bench/run/outcome.h"
-#include "umbra/bench/run/prepare.h"
-#include "umbra/bench/run/results.h"
-#include "umbra/bench/time/turns.h"
+#include "umbra/bench/lab/outcome.h"
+#include "umbra/bench/lab/prepare.h"
+#include "umbra/bench/lab/results.h"
+#include "umbra/bench/lab/turns.h"
 
 namespace umbra {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/run/outcome.h"
-#include "umbra/bench/run/results.h"
+#include "umbra/bench/lab/outcome.h"
+#include "umbra/bench/lab/results.h"
 
 namespace umbra {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "umbra/bench/exchange/npy.h"
+#include "umbra/bench/base/npy.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
 

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "umbra/bench/out/files.h"
+#include "umbra/bench/base/files.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/base/record.h"
 #include "umbra/bench/contenders/answers_file.h"
 #include "umbra/bench/contenders/introduction.h"
-#include "umbra/bench/record/record.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {

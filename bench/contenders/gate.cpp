@@ -7,11 +7,11 @@
 #include <optional>
 #include <utility>
 
-#include "umbra/bench/out/files.h"
-#include "umbra/bench/out/scratch_folder.h"
-#include "umbra/bench/run/prepare.h"
-#include "umbra/bench/run/reference.h"
-#include "umbra/bench/run/run.h"
+#include "umbra/bench/base/files.h"
+#include "umbra/bench/base/scratch_folder.h"
+#include "umbra/bench/lab/prepare.h"
+#include "umbra/bench/lab/reference.h"
+#include "umbra/bench/lab/run.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/errors/visibility_error.h"
 #include "umbra/core/image/image.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/record/record.h"
-#include "umbra/bench/run/describe.h"
+#include "umbra/bench/base/record.h"
+#include "umbra/bench/lab/describe.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {

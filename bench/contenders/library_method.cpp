@@ -9,10 +9,10 @@
 #include <memory>
 #include <mutex>
 
+#include "umbra/bench/base/files.h"
 #include "umbra/bench/contenders/answers_file.h"
 #include "umbra/bench/contenders/contender.h"
 #include "umbra/bench/contenders/include/umbra/contender.h"
-#include "umbra/bench/out/files.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/scene/names.h"
 #include "umbra/shadows/plugin.h"

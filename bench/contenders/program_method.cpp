@@ -8,9 +8,9 @@
 #include <mutex>
 #include <utility>
 
+#include "umbra/bench/base/files.h"
 #include "umbra/bench/contenders/contender.h"
 #include "umbra/bench/contenders/program_session.h"
-#include "umbra/bench/out/files.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "umbra/bench/base/scene_files.h"
 #include "umbra/bench/contenders/answers_file.h"
-#include "umbra/bench/exchange/scene_files.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_writer.h"
 

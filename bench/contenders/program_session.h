@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/base/scratch_folder.h"
 #include "umbra/bench/contenders/introduction.h"
 #include "umbra/bench/contenders/line_process.h"
-#include "umbra/bench/out/scratch_folder.h"
 #include "umbra/core/render/points.h"
 #include "umbra/core/render/visibility.h"
 #include "umbra/core/scene/scene.h"

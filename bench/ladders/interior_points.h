@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "umbra/bench/record/record.h"
-#include "umbra/bench/run/run.h"
+#include "umbra/bench/base/record.h"
+#include "umbra/bench/lab/run.h"
 
 namespace umbra {
 

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "umbra/bench/base/files.h"
 #include "umbra/bench/compare/explained_points.h"
 #include "umbra/bench/compare/pictures.h"
-#include "umbra/bench/out/files.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/io/scene_writer.h"
 

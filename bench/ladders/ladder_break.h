@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/base/record.h"
+#include "umbra/bench/lab/results.h"
 #include "umbra/bench/ladders/ladder_run.h"
-#include "umbra/bench/record/record.h"
-#include "umbra/bench/run/results.h"
 
 namespace umbra {
 

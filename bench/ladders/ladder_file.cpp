@@ -8,9 +8,9 @@
 #include <deque>
 #include <nlohmann/json.hpp>
 
-#include "umbra/bench/out/files.h"
+#include "umbra/bench/base/files.h"
+#include "umbra/bench/base/record.h"
 #include "umbra/bench/pages/report_text.h"
-#include "umbra/bench/record/record.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
 

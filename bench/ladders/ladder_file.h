@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/base/record.h"
+#include "umbra/bench/lab/chosen.h"
 #include "umbra/bench/ladders/ladder.h"
-#include "umbra/bench/record/record.h"
-#include "umbra/bench/run/chosen.h"
 
 namespace umbra {
 

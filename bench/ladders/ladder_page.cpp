@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "report_assets.h"
+#include "umbra/bench/base/staged_files.h"
 #include "umbra/bench/ladders/interior_points.h"
 #include "umbra/bench/ladders/ladder_cells.h"
 #include "umbra/bench/ladders/textbook_view.h"
-#include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/pages/failures.h"
 #include "umbra/bench/pages/page_template.h"
 #include "umbra/bench/pages/report_chart.h"

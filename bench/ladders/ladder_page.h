@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 
+#include "umbra/bench/base/staged_files.h"
 #include "umbra/bench/ladders/ladder_record.h"
-#include "umbra/bench/out/staged_files.h"
 
 namespace umbra {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/lab/describe.h"
 #include "umbra/bench/ladders/ladder_break.h"
 #include "umbra/bench/ladders/ladder_run.h"
-#include "umbra/bench/run/describe.h"
 
 namespace umbra {
 

@@ -6,9 +6,9 @@
 #include <ctime>
 #include <iterator>
 
-#include "umbra/bench/run/prepare.h"
-#include "umbra/bench/run/reference.h"
-#include "umbra/bench/time/turns.h"
+#include "umbra/bench/lab/prepare.h"
+#include "umbra/bench/lab/reference.h"
+#include "umbra/bench/lab/turns.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/core/render/shade.h"

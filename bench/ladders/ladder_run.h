@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/lab/outcome.h"
 #include "umbra/bench/ladders/interior_points.h"
 #include "umbra/bench/ladders/ladder.h"
-#include "umbra/bench/run/outcome.h"
 
 namespace umbra {
 

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "umbra/bench/base/statistics.h"
 #include "umbra/bench/ladders/ladder_cells.h"
 #include "umbra/bench/pages/report_text.h"
-#include "umbra/bench/statistics/statistics.h"
 
 namespace umbra {
 namespace {

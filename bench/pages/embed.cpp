@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-#include "umbra/bench/out/files.h"
+#include "umbra/bench/base/files.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/paths.h"

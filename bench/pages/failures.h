@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/run/results.h"
+#include "umbra/bench/lab/results.h"
 
 namespace umbra {
 

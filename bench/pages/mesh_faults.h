@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include "umbra/bench/run/describe.h"
+#include "umbra/bench/lab/describe.h"
 
 namespace umbra {
 

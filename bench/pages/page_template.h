@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/base/staged_files.h"
 
 namespace umbra {
 

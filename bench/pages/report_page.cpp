@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "umbra/bench/out/files.h"
+#include "umbra/bench/base/files.h"
 #include "umbra/bench/pages/error_palette.h"
 #include "umbra/bench/pages/error_rings.h"
 #include "umbra/bench/pages/report_text.h"

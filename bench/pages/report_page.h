@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "umbra/bench/out/staged_files.h"
-#include "umbra/bench/run/results.h"
+#include "umbra/bench/base/staged_files.h"
+#include "umbra/bench/lab/results.h"
 #include "umbra/core/image/image.h"
 
 namespace umbra {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "umbra/bench/record/field.h"
+#include "umbra/bench/base/field.h"
 
 namespace umbra {
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "umbra/bench/run/results.h"
+#include "umbra/bench/lab/results.h"
 
 namespace umbra {
 

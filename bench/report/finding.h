@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "umbra/bench/run/results.h"
+#include "umbra/bench/lab/results.h"
 
 namespace umbra {
 

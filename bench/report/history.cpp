@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "report_assets.h"
+#include "umbra/bench/base/statistics.h"
+#include "umbra/bench/lab/results.h"
 #include "umbra/bench/pages/page_template.h"
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
-#include "umbra/bench/run/results.h"
-#include "umbra/bench/statistics/statistics.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/paths.h"
 

@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "report_assets.h"
-#include "umbra/bench/out/files.h"
-#include "umbra/bench/out/staged_folder.h"
+#include "umbra/bench/base/files.h"
+#include "umbra/bench/base/staged_folder.h"
+#include "umbra/bench/lab/asked_method.h"
+#include "umbra/bench/lab/prepare.h"
 #include "umbra/bench/report/formula.h"
-#include "umbra/bench/run/asked_method.h"
-#include "umbra/bench/run/prepare.h"
 #include "umbra/bench/studies/light/shading_models.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "umbra/bench/record/field.h"
+#include "umbra/bench/base/field.h"
 #include "umbra/bench/report/lecture_texts.h"
 
 namespace umbra {

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "report_assets.h"
-#include "umbra/bench/out/files.h"
+#include "umbra/bench/base/field.h"
+#include "umbra/bench/base/files.h"
 #include "umbra/bench/pages/report_text.h"
-#include "umbra/bench/record/field.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {

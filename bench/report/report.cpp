@@ -13,10 +13,10 @@
 #include <set>
 
 #include "report_assets.h"
+#include "umbra/bench/base/files.h"
+#include "umbra/bench/base/place_lock.h"
 #include "umbra/bench/ladders/ladder_page.h"
 #include "umbra/bench/ladders/textbook_view.h"
-#include "umbra/bench/out/files.h"
-#include "umbra/bench/out/place_lock.h"
 #include "umbra/bench/pages/failures.h"
 #include "umbra/bench/pages/page_template.h"
 #include "umbra/bench/pages/report_page.h"
@@ -24,7 +24,7 @@
 #include "umbra/bench/report/lecture_experiments.h"
 #include "umbra/bench/report/lecture_page.h"
 #include "umbra/bench/report/report_views.h"
-#include "umbra/bench/trade/trade_page.h"
+#include "umbra/bench/sweep/trade_page.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/paths.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/base/staged_files.h"
 #include "umbra/bench/report/lecture_texts.h"
 
 namespace umbra {

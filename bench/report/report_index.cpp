@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "umbra/bench/base/statistics.h"
 #include "umbra/bench/pages/failures.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/report/finding.h"
-#include "umbra/bench/statistics/statistics.h"
 
 namespace umbra {
 

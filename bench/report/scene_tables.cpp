@@ -7,11 +7,11 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "umbra/bench/lab/edge_figure.h"
 #include "umbra/bench/pages/error_palette.h"
 #include "umbra/bench/pages/mesh_faults.h"
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
-#include "umbra/bench/run/edge_figure.h"
 
 namespace umbra {
 namespace {

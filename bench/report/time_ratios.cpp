@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "umbra/bench/base/statistics.h"
 #include "umbra/bench/pages/report_text.h"
-#include "umbra/bench/statistics/statistics.h"
 
 namespace umbra {
 

@@ -13,8 +13,8 @@
 #include <memory>
 #include <optional>
 
+#include "umbra/bench/base/scratch_folder.h"
 #include "umbra/bench/compare/method_files.h"
-#include "umbra/bench/out/scratch_folder.h"
 #include "umbra/bench/speed/timed_loop.h"
 #include "umbra/core/base/memory.h"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/statistics/statistics.h"
+#include "umbra/bench/base/statistics.h"
 
 namespace umbra {
 

@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "umbra/bench/run/prepare.h"
-#include "umbra/bench/time/calibration.h"
+#include "umbra/bench/lab/calibration.h"
+#include "umbra/bench/lab/prepare.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "umbra/bench/out/staged_files.h"
-#include "umbra/bench/out/staged_folder.h"
-#include "umbra/bench/run/describe.h"
+#include "umbra/bench/base/staged_files.h"
+#include "umbra/bench/base/staged_folder.h"
+#include "umbra/bench/lab/describe.h"
 
 namespace umbra {
 

@@ -4,9 +4,9 @@
 
 #include <utility>
 
+#include "umbra/bench/base/field.h"
 #include "umbra/bench/compare/record.h"
-#include "umbra/bench/record/field.h"
-#include "umbra/bench/run/outcome.h"
+#include "umbra/bench/lab/outcome.h"
 #include "umbra/bench/sweep/content_key.h"
 #include "umbra/bench/sweep/truth_file.h"
 #include "umbra/bench/sweep/views.h"

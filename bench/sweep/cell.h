@@ -10,10 +10,10 @@
 #include <string>
 
 #include "umbra/bench/compare/image_figures.h"
-#include "umbra/bench/run/prepare.h"
-#include "umbra/bench/run/reference.h"
+#include "umbra/bench/lab/prepare.h"
+#include "umbra/bench/lab/reference.h"
+#include "umbra/bench/lab/turns.h"
 #include "umbra/bench/sweep/cell_record.h"
-#include "umbra/bench/time/turns.h"
 
 namespace umbra {
 

@@ -5,7 +5,7 @@
 
 #include <chrono>
 
-#include "umbra/bench/out/files.h"
+#include "umbra/bench/base/files.h"
 
 namespace umbra {
 namespace fs = std::filesystem;

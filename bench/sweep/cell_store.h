@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "umbra/bench/record/record.h"
+#include "umbra/bench/base/record.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {

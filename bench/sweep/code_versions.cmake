@@ -13,7 +13,7 @@ endfunction()
 
 file(GLOB_RECURSE shared ${SOURCE}/core/*.h ${SOURCE}/core/*.cpp ${SOURCE}/shadows/geometry/*.h ${SOURCE}/shadows/geometry/*.cpp
      ${SOURCE}/shadows/light_rays/*.h ${SOURCE}/shadows/light_rays/*.cpp ${SOURCE}/shadows/bins/*.h ${SOURCE}/shadows/bins/*.cpp
-     ${SOURCE}/shadows/maps/*.h ${SOURCE}/shadows/maps/*.cpp ${SOURCE}/bench/run/*.h ${SOURCE}/bench/run/*.cpp)
+     ${SOURCE}/shadows/maps/*.h ${SOURCE}/shadows/maps/*.cpp ${SOURCE}/bench/lab/*.h ${SOURCE}/bench/lab/*.cpp)
 file(GLOB contract ${SOURCE}/shadows/*.h ${SOURCE}/shadows/*.cpp ${SOURCE}/bench/compare/record.*
      ${SOURCE}/bench/compare/image_figures.* ${SOURCE}/bench/sweep/cell.h ${SOURCE}/bench/sweep/cell.cpp ${SOURCE}/bench/sweep/views.*)
 list(SORT shared)

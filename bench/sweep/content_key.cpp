@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-#include "umbra/bench/out/files.h"
+#include "umbra/bench/base/files.h"
 #include "umbra/shadows/plugin.h"
 
 #include "code_versions.h"  // made by bench/sweep/code_versions.cmake

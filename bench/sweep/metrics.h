@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "umbra/bench/run/edge_figure.h"
+#include "umbra/bench/lab/edge_figure.h"
 #include "umbra/bench/sweep/cell_record.h"
-#include "umbra/bench/trade/sweep_results.h"
+#include "umbra/bench/sweep/sweep_results.h"
 
 namespace umbra {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <new>
 
-#include "umbra/bench/record/record.h"
+#include "umbra/bench/base/record.h"
 #include "umbra/bench/sweep/content_key.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/io/scene_io.h"

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/lab/turns.h"
 #include "umbra/bench/sweep/cell.h"
 #include "umbra/bench/sweep/cell_store.h"
-#include "umbra/bench/time/turns.h"
-#include "umbra/bench/trade/sweep_results.h"
+#include "umbra/bench/sweep/sweep_results.h"
 
 namespace umbra {
 

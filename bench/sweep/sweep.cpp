@@ -4,12 +4,12 @@
 
 #include <cmath>
 
+#include "umbra/bench/base/field.h"
+#include "umbra/bench/base/files.h"
+#include "umbra/bench/base/shell.h"
 #include "umbra/bench/compare/record.h"
-#include "umbra/bench/out/files.h"
-#include "umbra/bench/out/shell.h"
-#include "umbra/bench/record/field.h"
-#include "umbra/bench/run/chosen.h"
-#include "umbra/bench/run/steps.h"
+#include "umbra/bench/lab/chosen.h"
+#include "umbra/bench/lab/steps.h"
 #include "umbra/bench/sweep/cell_store.h"
 #include "umbra/bench/sweep/grid.h"
 #include "umbra/bench/sweep/scene_lab.h"

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/statistics/statistics.h"
+#include "umbra/bench/base/statistics.h"
+#include "umbra/bench/lab/turns.h"
+#include "umbra/bench/lab/workload.h"
 #include "umbra/bench/sweep/cell.h"
-#include "umbra/bench/time/turns.h"
-#include "umbra/bench/time/workload.h"
-#include "umbra/bench/trade/sweep_results.h"
+#include "umbra/bench/sweep/sweep_results.h"
 
 namespace umbra {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "umbra/bench/statistics/pareto.h"
-#include "umbra/bench/statistics/statistics.h"
+#include "umbra/bench/base/pareto.h"
+#include "umbra/bench/base/statistics.h"
 #include "umbra/bench/sweep/bounds.h"
 #include "umbra/bench/sweep/grid.h"
 #include "umbra/bench/sweep/metrics.h"

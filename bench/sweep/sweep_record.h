@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/lab/workload.h"
 #include "umbra/bench/sweep/cell_record.h"
-#include "umbra/bench/time/workload.h"
-#include "umbra/bench/trade/sweep_results.h"
+#include "umbra/bench/sweep/sweep_results.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "umbra/bench/run/reference.h"
+#include "umbra/bench/lab/reference.h"
 
 namespace umbra {
 

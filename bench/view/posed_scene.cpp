@@ -7,8 +7,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
 
-#include "umbra/bench/motion/animation.h"
-#include "umbra/bench/run/prepare.h"
+#include "umbra/bench/lab/prepare.h"
+#include "umbra/bench/studies/motion/animation.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/core/render/gbuffer.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/run/describe.h"
-#include "umbra/bench/run/point_answer.h"
+#include "umbra/bench/lab/describe.h"
+#include "umbra/bench/lab/point_answer.h"
 
 namespace umbra {
 

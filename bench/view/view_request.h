@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/record/field.h"
-#include "umbra/bench/record/record.h"
+#include "umbra/bench/base/field.h"
+#include "umbra/bench/base/record.h"
 
 namespace umbra {
 

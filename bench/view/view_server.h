@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/run/budget.h"
+#include "umbra/bench/lab/budget.h"
 
 namespace umbra {
 

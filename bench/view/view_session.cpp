@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "umbra/bench/compare/pictures.h"
+#include "umbra/bench/lab/outcome.h"
+#include "umbra/bench/lab/prepare.h"
 #include "umbra/bench/pages/error_palette.h"
-#include "umbra/bench/run/outcome.h"
-#include "umbra/bench/run/prepare.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/image/metrics.h"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/motion/kept_method.h"
-#include "umbra/bench/run/reference.h"
+#include "umbra/bench/lab/reference.h"
+#include "umbra/bench/studies/motion/kept_method.h"
 #include "umbra/bench/view/posed_scene.h"
 #include "umbra/bench/view/view_record.h"
 #include "umbra/core/image/image.h"

@@ -1,5 +1,5 @@
 // Antialiased pictures: pixels on an edge become means, and nothing that is measured changes.
-#include "umbra/bench/run/antialias.h"
+#include "umbra/bench/lab/antialias.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <set>
 
 #include "umbra/bench/compare/compare.h"
-#include "umbra/bench/run/asked_method.h"
-#include "umbra/bench/run/run.h"
+#include "umbra/bench/lab/asked_method.h"
+#include "umbra/bench/lab/run.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/io/scene_io.h"

@@ -1,5 +1,5 @@
 // An accepted run of benchmarks against a new one, with planted times.
-#include "umbra/bench/baseline/baseline.h"
+#include "umbra/bench/gate/baseline.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -9,8 +9,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "umbra/bench/base/files.h"
 #include "umbra/bench/cli/long_runs.h"
-#include "umbra/bench/out/files.h"
 #include "umbra/bench/report/report.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "umbra/bench/run/prepare.h"
-#include "umbra/bench/run/run.h"
+#include "umbra/bench/lab/prepare.h"
+#include "umbra/bench/lab/run.h"
 #include "umbra/core/base/error.h"
 #include "umbra/tests/support/temporary_folder.h"
 

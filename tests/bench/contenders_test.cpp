@@ -8,17 +8,17 @@
 #include <set>
 #include <thread>
 
+#include "umbra/bench/base/files.h"
+#include "umbra/bench/base/npy.h"
+#include "umbra/bench/base/scene_files.h"
 #include "umbra/bench/compare/compare.h"
 #include "umbra/bench/contenders/answers_file.h"
 #include "umbra/bench/contenders/contender.h"
 #include "umbra/bench/contenders/gate.h"
 #include "umbra/bench/contenders/program_session.h"
-#include "umbra/bench/course/grade.h"
-#include "umbra/bench/exchange/npy.h"
-#include "umbra/bench/exchange/scene_files.h"
-#include "umbra/bench/out/files.h"
-#include "umbra/bench/run/outcome.h"
-#include "umbra/bench/run/run.h"
+#include "umbra/bench/lab/outcome.h"
+#include "umbra/bench/lab/run.h"
+#include "umbra/bench/report/course/grade.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/tests/support/temporary_folder.h"

@@ -4,15 +4,15 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "umbra/bench/base/files.h"
 #include "umbra/bench/contenders/contender.h"
-#include "umbra/bench/course/apart.h"
-#include "umbra/bench/course/course_report.h"
-#include "umbra/bench/course/grade_page.h"
-#include "umbra/bench/course/judge.h"
-#include "umbra/bench/course/platforms.h"
-#include "umbra/bench/out/files.h"
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/report/course/apart.h"
+#include "umbra/bench/report/course/course_report.h"
+#include "umbra/bench/report/course/grade_page.h"
+#include "umbra/bench/report/course/judge.h"
+#include "umbra/bench/report/course/platforms.h"
 #include "umbra/bench/report/report.h"
 #include "umbra/core/base/error.h"
 #include "umbra/tests/support/json_schema.h"

@@ -1,4 +1,4 @@
-#include "umbra/bench/diff/diff.h"
+#include "umbra/bench/gate/diff.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,10 +8,10 @@
 #include <iterator>
 #include <regex>
 
-#include "umbra/bench/diff/diff_record.h"
-#include "umbra/bench/diff/diff_set.h"
-#include "umbra/bench/diff/diff_views.h"
-#include "umbra/bench/diff/difference_map.h"
+#include "umbra/bench/gate/diff_record.h"
+#include "umbra/bench/gate/diff_set.h"
+#include "umbra/bench/gate/diff_views.h"
+#include "umbra/bench/gate/difference_map.h"
 #include "umbra/core/base/error.h"
 #include "umbra/tests/support/written_parts.h"
 

@@ -1,5 +1,5 @@
 // The light that arrives at faces and objects, beside sums by hand.
-#include "umbra/bench/energy/energy.h"
+#include "umbra/bench/studies/energy/energy.h"
 
 #include <gtest/gtest.h>
 

@@ -8,9 +8,9 @@
 #include <set>
 #include <string>
 
+#include "umbra/bench/lab/outcome.h"
+#include "umbra/bench/lab/prepare.h"
 #include "umbra/bench/pages/error_palette.h"
-#include "umbra/bench/run/outcome.h"
-#include "umbra/bench/run/prepare.h"
 #include "umbra/core/io/scene_io.h"
 
 namespace umbra {

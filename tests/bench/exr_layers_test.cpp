@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "umbra/bench/compare/compare.h"
-#include "umbra/bench/run/outcome.h"
+#include "umbra/bench/lab/outcome.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/tests/support/temporary_folder.h"
 

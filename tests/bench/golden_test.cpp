@@ -1,5 +1,5 @@
 // The goldens: every method on every teaching scene is as it was accepted. And the gate itself: planted defects.
-#include "umbra/bench/golden/golden.h"
+#include "umbra/bench/gate/golden.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,9 +11,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "umbra/bench/golden/golden_planes.h"
-#include "umbra/bench/run/chosen.h"
-#include "umbra/bench/run/describe.h"
+#include "umbra/bench/gate/golden_planes.h"
+#include "umbra/bench/lab/chosen.h"
+#include "umbra/bench/lab/describe.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/tests/support/temporary_folder.h"

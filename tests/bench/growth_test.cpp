@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "umbra/bench/motion/growth.h"
+#include "umbra/bench/studies/motion/growth.h"
 #include "umbra/core/base/error.h"
 #include "umbra/tests/support/json_schema.h"
 #include "umbra/tests/support/planted_method.h"

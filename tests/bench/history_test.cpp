@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "umbra/bench/run/results.h"
+#include "umbra/bench/lab/results.h"
 #include "umbra/core/base/error.h"
 #include "umbra/tests/support/temporary_folder.h"
 

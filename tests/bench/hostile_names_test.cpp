@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "umbra/bench/compare/compare.h"
-#include "umbra/bench/diff/diff_set.h"
+#include "umbra/bench/gate/diff_set.h"
 #include "umbra/bench/report/report.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"

@@ -11,8 +11,8 @@
 
 #include "umbra/bench/compare/compare.h"
 #include "umbra/bench/compare/record.h"
-#include "umbra/bench/diff/diff.h"
-#include "umbra/bench/diff/diff_record.h"
+#include "umbra/bench/gate/diff.h"
+#include "umbra/bench/gate/diff_record.h"
 #include "umbra/bench/report/report.h"
 #include "umbra/core/image/metrics.h"
 #include "umbra/tests/support/html_table.h"

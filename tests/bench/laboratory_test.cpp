@@ -6,10 +6,10 @@
 #include <set>
 #include <thread>
 
-#include "umbra/bench/run/at_work.h"
-#include "umbra/bench/run/chosen.h"
-#include "umbra/bench/run/outcome.h"
-#include "umbra/bench/run/prepare.h"
+#include "umbra/bench/lab/at_work.h"
+#include "umbra/bench/lab/chosen.h"
+#include "umbra/bench/lab/outcome.h"
+#include "umbra/bench/lab/prepare.h"
 #include "umbra/core/base/error.h"
 #include "umbra/tests/support/planted_method.h"
 #include "umbra/tests/support/temporary_folder.h"

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "umbra/bench/base/files.h"
 #include "umbra/bench/ladders/ladder_file.h"
 #include "umbra/bench/ladders/ladder_record.h"
-#include "umbra/bench/out/files.h"
 #include "umbra/core/base/error.h"
 #include "umbra/tests/support/program.h"
 #include "umbra/tests/support/temporary_folder.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/out/files.h"
+#include "umbra/bench/base/files.h"
 #include "umbra/bench/pages/report_chart.h"
 #include "umbra/bench/report/formula.h"
 #include "umbra/bench/report/lecture_experiments.h"

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <string>
 
-#include "umbra/bench/record/record.h"
+#include "umbra/bench/base/record.h"
 #include "umbra/bench/sweep/cell_record.h"
 #include "umbra/bench/sweep/cell_store.h"
 

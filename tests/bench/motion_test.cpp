@@ -9,11 +9,11 @@
 #include <sstream>
 #include <tuple>
 
-#include "umbra/bench/motion/frame_errors.h"
-#include "umbra/bench/motion/mix_triangle.h"
-#include "umbra/bench/motion/motion.h"
-#include "umbra/bench/motion/motion_summary.h"
-#include "umbra/bench/run/run.h"
+#include "umbra/bench/lab/run.h"
+#include "umbra/bench/studies/motion/frame_errors.h"
+#include "umbra/bench/studies/motion/mix_triangle.h"
+#include "umbra/bench/studies/motion/motion.h"
+#include "umbra/bench/studies/motion/motion_summary.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/errors/error_causes.h"
 #include "umbra/core/errors/visibility_error.h"

@@ -1,11 +1,11 @@
 // Output folders: whole or not at all, one run at a time, nothing of a killed run left, no file of a user lost.
 #include <gtest/gtest.h>
 
-#include "umbra/bench/out/files.h"
-#include "umbra/bench/out/own_files.h"
-#include "umbra/bench/out/place_lock.h"
-#include "umbra/bench/out/staged_files.h"
-#include "umbra/bench/out/staged_folder.h"
+#include "umbra/bench/base/files.h"
+#include "umbra/bench/base/own_files.h"
+#include "umbra/bench/base/place_lock.h"
+#include "umbra/bench/base/staged_files.h"
+#include "umbra/bench/base/staged_folder.h"
 #include "umbra/core/base/error.h"
 #include "umbra/tests/support/temporary_folder.h"
 

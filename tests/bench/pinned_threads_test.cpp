@@ -1,4 +1,4 @@
-#include "umbra/bench/time/pinned_threads.h"
+#include "umbra/bench/lab/pinned_threads.h"
 
 #include <gtest/gtest.h>
 #include <sched.h>

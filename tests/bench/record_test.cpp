@@ -1,5 +1,5 @@
 // Records: what a description of members writes, reads and says in its schema.
-#include "umbra/bench/record/record.h"
+#include "umbra/bench/base/record.h"
 
 #include <gtest/gtest.h>
 

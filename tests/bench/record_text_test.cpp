@@ -3,8 +3,8 @@
 
 #include "umbra/bench/compare/compare.h"
 #include "umbra/bench/compare/record.h"
+#include "umbra/bench/lab/describe.h"
 #include "umbra/bench/report/report.h"
-#include "umbra/bench/run/describe.h"
 #include "umbra/tests/support/temporary_folder.h"
 
 namespace umbra {

@@ -1,11 +1,11 @@
 // At how many points a reference answers.
-#include "umbra/bench/run/reference.h"
+#include "umbra/bench/lab/reference.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "umbra/bench/run/prepare.h"
+#include "umbra/bench/lab/prepare.h"
 #include "umbra/tests/support/asked.h"
 #include "umbra/tests/support/temporary_folder.h"
 

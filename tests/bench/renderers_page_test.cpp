@@ -4,9 +4,9 @@
 #include <cmath>
 #include <regex>
 
+#include "umbra/bench/base/files.h"
 #include "umbra/bench/compare/compare.h"
 #include "umbra/bench/contenders/contender.h"
-#include "umbra/bench/out/files.h"
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/report/finding.h"

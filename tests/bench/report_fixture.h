@@ -9,7 +9,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "umbra/bench/record/field.h"
+#include "umbra/bench/base/field.h"
 #include "umbra/bench/report/report.h"
 #include "umbra/core/base/error.h"
 

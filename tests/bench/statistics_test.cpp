@@ -1,5 +1,5 @@
 // Statistics with known answers: by hand, from tables, or by what a planted defect would change.
-#include "umbra/bench/statistics/statistics.h"
+#include "umbra/bench/base/statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "umbra/bench/statistics/pareto.h"
-#include "umbra/bench/statistics/power_law.h"
-#include "umbra/bench/statistics/profile.h"
+#include "umbra/bench/base/pareto.h"
+#include "umbra/bench/base/power_law.h"
+#include "umbra/bench/base/profile.h"
 #include "umbra/core/base/random_bits.h"
 
 namespace umbra {

@@ -1,4 +1,4 @@
-#include "umbra/bench/run/steps.h"
+#include "umbra/bench/lab/steps.h"
 
 #include <gtest/gtest.h>
 

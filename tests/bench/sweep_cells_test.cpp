@@ -14,11 +14,11 @@
 #include <type_traits>
 
 #include "made_cell.h"
-#include "umbra/bench/recommend/recommend.h"
-#include "umbra/bench/run/outcome.h"
+#include "umbra/bench/lab/outcome.h"
 #include "umbra/bench/sweep/bounds.h"
 #include "umbra/bench/sweep/content_key.h"
 #include "umbra/bench/sweep/grid.h"
+#include "umbra/bench/sweep/recommend/recommend.h"
 #include "umbra/bench/sweep/sweep.h"
 #include "umbra/bench/sweep/sweep_record.h"
 #include "umbra/bench/sweep/truth_file.h"

@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "made_cell.h"
-#include "umbra/bench/recommend/first_answer.h"
 #include "umbra/bench/sweep/bounds.h"
 #include "umbra/bench/sweep/grid.h"
+#include "umbra/bench/sweep/recommend/first_answer.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/tests/support/json_schema.h"

@@ -1,4 +1,4 @@
-#include "umbra/bench/diff/tolerance.h"
+#include "umbra/bench/gate/tolerance.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -6,12 +6,12 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "umbra/bench/diff/diff.h"
-#include "umbra/bench/diff/diff_record.h"
-#include "umbra/bench/diff/diff_set.h"
-#include "umbra/bench/diff/diff_views.h"
-#include "umbra/bench/out/files.h"
-#include "umbra/bench/out/shell.h"
+#include "umbra/bench/base/files.h"
+#include "umbra/bench/base/shell.h"
+#include "umbra/bench/gate/diff.h"
+#include "umbra/bench/gate/diff_record.h"
+#include "umbra/bench/gate/diff_set.h"
+#include "umbra/bench/gate/diff_views.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/tests/support/temporary_folder.h"

@@ -1,6 +1,6 @@
 // The page of sweeps: every figure where its headings say, fronts and sentences as worked out by hand, marks where
 // their values are.
-#include "umbra/bench/trade/trade_page.h"
+#include "umbra/bench/sweep/trade_page.h"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,9 @@
 #include <regex>
 
 #include "trade_fixture.h"
-#include "umbra/bench/trade/trade_chart.h"
-#include "umbra/bench/trade/trade_findings.h"
-#include "umbra/bench/trade/trade_views.h"
+#include "umbra/bench/sweep/trade_chart.h"
+#include "umbra/bench/sweep/trade_findings.h"
+#include "umbra/bench/sweep/trade_views.h"
 #include "umbra/tests/support/html_table.h"
 
 namespace umbra {

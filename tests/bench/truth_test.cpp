@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "umbra/bench/exchange/npy.h"
-#include "umbra/bench/out/files.h"
-#include "umbra/bench/run/prepare.h"
-#include "umbra/bench/run/run.h"
-#include "umbra/bench/truth/truth_set.h"
+#include "umbra/bench/base/files.h"
+#include "umbra/bench/base/npy.h"
+#include "umbra/bench/contenders/truth_set.h"
+#include "umbra/bench/lab/prepare.h"
+#include "umbra/bench/lab/run.h"
 #include "umbra/core/base/error.h"
 #include "umbra/tests/support/temporary_folder.h"
 

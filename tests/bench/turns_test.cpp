@@ -1,6 +1,6 @@
 // Times in turns, with a method and a clock that the test holds: who ran when, on which build, and who is recorded
 // with which time.
-#include "umbra/bench/time/turns.h"
+#include "umbra/bench/lab/turns.h"
 
 #include <gtest/gtest.h>
 

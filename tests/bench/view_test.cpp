@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "umbra/bench/run/prepare.h"
-#include "umbra/bench/run/run.h"
+#include "umbra/bench/lab/prepare.h"
+#include "umbra/bench/lab/run.h"
 #include "umbra/bench/view/view_server.h"
 #include "umbra/bench/view/view_session.h"
 #include "umbra/core/base/error.h"

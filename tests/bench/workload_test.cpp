@@ -1,4 +1,4 @@
-#include "umbra/bench/time/workload.h"
+#include "umbra/bench/lab/workload.h"
 
 #include <gtest/gtest.h>
 

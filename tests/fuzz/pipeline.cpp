@@ -5,10 +5,10 @@
 #include <optional>
 #include <stdexcept>
 
-#include "umbra/bench/run/outcome.h"
-#include "umbra/bench/run/prepare.h"
-#include "umbra/bench/run/reference.h"
-#include "umbra/bench/run/run.h"
+#include "umbra/bench/lab/outcome.h"
+#include "umbra/bench/lab/prepare.h"
+#include "umbra/bench/lab/reference.h"
+#include "umbra/bench/lab/run.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/core/render/shade.h"
 #include "umbra/shadows/method.h"

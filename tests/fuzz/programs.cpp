@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "umbra/bench/diff/diff.h"
+#include "umbra/bench/gate/diff.h"
 #include "umbra/bench/report/report.h"
 #include "umbra/bench/view/view_session.h"
 #include "umbra/core/image/image_headers.h"

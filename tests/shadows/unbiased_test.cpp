@@ -10,9 +10,9 @@
 #include <cmath>
 #include <random>
 
-#include "umbra/bench/golden/golden_planes.h"
-#include "umbra/bench/run/chosen.h"
-#include "umbra/bench/run/reference.h"
+#include "umbra/bench/gate/golden_planes.h"
+#include "umbra/bench/lab/chosen.h"
+#include "umbra/bench/lab/reference.h"
 #include "umbra/tests/support/known_scenes.h"
 #include "umbra/tests/support/method_case.h"
 

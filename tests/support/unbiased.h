@@ -4,7 +4,7 @@
 #include <functional>
 #include <span>
 
-#include "umbra/bench/run/run.h"
+#include "umbra/bench/lab/run.h"
 
 namespace umbra {
 

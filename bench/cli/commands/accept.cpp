@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <optional>
 
+#include "umbra/bench/base/place_lock.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
-#include "umbra/bench/golden/golden.h"
-#include "umbra/bench/out/place_lock.h"
-#include "umbra/bench/run/chosen.h"
+#include "umbra/bench/gate/golden.h"
+#include "umbra/bench/lab/chosen.h"
 
 namespace umbra {
 namespace {

@@ -1,8 +1,8 @@
+#include "umbra/bench/base/own_files.h"
+#include "umbra/bench/base/place_lock.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
-#include "umbra/bench/out/own_files.h"
-#include "umbra/bench/out/place_lock.h"
-#include "umbra/bench/run/chosen.h"
+#include "umbra/bench/lab/chosen.h"
 #include "umbra/bench/studies/bias/bias_study.h"
 
 namespace umbra {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
+#include "umbra/bench/base/own_files.h"
+#include "umbra/bench/base/place_lock.h"
 #include "umbra/bench/cli/long_runs.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
-#include "umbra/bench/out/own_files.h"
-#include "umbra/bench/out/place_lock.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {

@@ -10,7 +10,7 @@
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/streams.h"
 #include "umbra/bench/ladders/ladder.h"
-#include "umbra/bench/motion/growth_family.h"
+#include "umbra/bench/studies/motion/growth_family.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
+#include "umbra/bench/base/files.h"
+#include "umbra/bench/base/staged_files.h"
+#include "umbra/bench/base/staged_folder.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
 #include "umbra/bench/contenders/gate.h"
 #include "umbra/bench/contenders/program_session.h"
-#include "umbra/bench/out/files.h"
-#include "umbra/bench/out/staged_files.h"
-#include "umbra/bench/out/staged_folder.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {

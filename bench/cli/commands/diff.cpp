@@ -2,11 +2,11 @@
 
 #include <limits>
 
+#include "umbra/bench/base/scratch_folder.h"
+#include "umbra/bench/base/staged_files.h"
 #include "umbra/bench/cli/options.h"
-#include "umbra/bench/diff/diff_set.h"
-#include "umbra/bench/diff/diff_views.h"
-#include "umbra/bench/out/scratch_folder.h"
-#include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/gate/diff_set.h"
+#include "umbra/bench/gate/diff_views.h"
 #include "umbra/bench/pages/embed.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/paths.h"

@@ -1,8 +1,8 @@
-#include "umbra/bench/energy/energy.h"
+#include "umbra/bench/studies/energy/energy.h"
+#include "umbra/bench/base/files.h"
+#include "umbra/bench/base/staged_folder.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
-#include "umbra/bench/out/files.h"
-#include "umbra/bench/out/staged_folder.h"
 
 namespace umbra {
 

@@ -1,9 +1,9 @@
-#include "umbra/bench/motion/growth.h"
+#include "umbra/bench/studies/motion/growth.h"
 
+#include "umbra/bench/base/own_files.h"
+#include "umbra/bench/base/place_lock.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
-#include "umbra/bench/out/own_files.h"
-#include "umbra/bench/out/place_lock.h"
 
 namespace umbra {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include "umbra/bench/base/staged_files.h"
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/streams.h"
-#include "umbra/bench/out/staged_files.h"
 
 namespace umbra {
 

@@ -9,9 +9,9 @@
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/streams.h"
+#include "umbra/bench/lab/describe.h"
+#include "umbra/bench/lab/prepare.h"
 #include "umbra/bench/pages/mesh_faults.h"
-#include "umbra/bench/run/describe.h"
-#include "umbra/bench/run/prepare.h"
 #include "umbra/shadows/volumes/silhouettes.h"
 
 namespace umbra {

@@ -1,9 +1,9 @@
-#include "umbra/bench/motion/motion.h"
+#include "umbra/bench/studies/motion/motion.h"
 
+#include "umbra/bench/base/own_files.h"
+#include "umbra/bench/base/place_lock.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
-#include "umbra/bench/out/own_files.h"
-#include "umbra/bench/out/place_lock.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {

@@ -1,9 +1,9 @@
+#include "umbra/bench/base/files.h"
+#include "umbra/bench/base/staged_folder.h"
 #include "umbra/bench/cli/lit_polygons.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
-#include "umbra/bench/out/files.h"
-#include "umbra/bench/out/staged_folder.h"
-#include "umbra/bench/run/prepare.h"
+#include "umbra/bench/lab/prepare.h"
 #include "umbra/shadows/atherton/atherton_weiler.h"
 
 namespace umbra {

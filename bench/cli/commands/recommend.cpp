@@ -5,9 +5,9 @@
 
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
-#include "umbra/bench/recommend/first_answer.h"
 #include "umbra/bench/sweep/grid.h"
 #include "umbra/bench/sweep/metrics.h"
+#include "umbra/bench/sweep/recommend/first_answer.h"
 #include "umbra/bench/sweep/sweep.h"
 #include "umbra/core/base/error.h"
 

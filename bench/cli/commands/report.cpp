@@ -7,17 +7,17 @@
 #include <optional>
 #include <set>
 
+#include "umbra/bench/base/own_files.h"
+#include "umbra/bench/base/place_lock.h"
 #include "umbra/bench/cli/long_runs.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
-#include "umbra/bench/course/course_report.h"
-#include "umbra/bench/out/own_files.h"
-#include "umbra/bench/out/place_lock.h"
+#include "umbra/bench/lab/antialias.h"
+#include "umbra/bench/lab/chosen.h"
+#include "umbra/bench/report/course/course_report.h"
 #include "umbra/bench/report/lecture_experiments.h"
 #include "umbra/bench/report/lecture_page.h"
 #include "umbra/bench/report/lecture_shows.h"
-#include "umbra/bench/run/antialias.h"
-#include "umbra/bench/run/chosen.h"
 #include "umbra/bench/studies/radiosity/light_exchange.h"
 #include "umbra/bench/studies/shading/shading_study.h"
 #include "umbra/bench/studies/whitted/whitted_study.h"

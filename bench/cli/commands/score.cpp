@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "umbra/bench/cli/options.h"
-#include "umbra/bench/truth/truth_set.h"
+#include "umbra/bench/contenders/truth_set.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {

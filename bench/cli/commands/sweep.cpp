@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
+#include "umbra/bench/base/own_files.h"
+#include "umbra/bench/base/place_lock.h"
 #include "umbra/bench/cli/long_runs.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
-#include "umbra/bench/out/own_files.h"
-#include "umbra/bench/out/place_lock.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/sweep/grid.h"
 #include "umbra/bench/sweep/sweep_record.h"

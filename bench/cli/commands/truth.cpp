@@ -1,4 +1,4 @@
-#include "umbra/bench/truth/truth_set.h"
+#include "umbra/bench/contenders/truth_set.h"
 
 #include <fmt/format.h>
 

@@ -5,12 +5,12 @@
 
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
-#include "umbra/bench/run/at_work.h"
-#include "umbra/bench/run/chosen.h"
-#include "umbra/bench/run/describe.h"
-#include "umbra/bench/run/point_answer.h"
-#include "umbra/bench/run/prepare.h"
-#include "umbra/bench/run/reference.h"
+#include "umbra/bench/lab/at_work.h"
+#include "umbra/bench/lab/chosen.h"
+#include "umbra/bench/lab/describe.h"
+#include "umbra/bench/lab/point_answer.h"
+#include "umbra/bench/lab/prepare.h"
+#include "umbra/bench/lab/reference.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {

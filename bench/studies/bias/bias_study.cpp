@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <tuple>
 
-#include "umbra/bench/out/staged_files.h"
-#include "umbra/bench/run/at_work.h"
-#include "umbra/bench/run/chosen.h"
-#include "umbra/bench/run/reference.h"
+#include "umbra/bench/base/staged_files.h"
+#include "umbra/bench/lab/at_work.h"
+#include "umbra/bench/lab/chosen.h"
+#include "umbra/bench/lab/reference.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/errors/error_causes.h"
 

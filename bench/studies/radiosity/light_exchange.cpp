@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "umbra/bench/run/at_work.h"
+#include "umbra/bench/lab/at_work.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/render/shade.h"
 #include "umbra/shadows/radiosity/exchange.h"

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "umbra/bench/statistics/pareto.h"
-#include "umbra/bench/statistics/statistics.h"
+#include "umbra/bench/base/pareto.h"
+#include "umbra/bench/base/statistics.h"
 #include "umbra/bench/sweep/metrics.h"
 #include "umbra/core/base/error.h"
 

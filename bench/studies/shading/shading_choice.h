@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "umbra/bench/run/describe.h"
+#include "umbra/bench/lab/describe.h"
 
 namespace umbra {
 

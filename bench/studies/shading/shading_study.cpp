@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
-#include "umbra/bench/run/asked_method.h"
-#include "umbra/bench/statistics/statistics.h"
+#include "umbra/bench/base/statistics.h"
+#include "umbra/bench/lab/asked_method.h"
 #include "umbra/bench/studies/light/shading_models.h"
 #include "umbra/bench/studies/shading/stages.h"
 #include "umbra/bench/sweep/views.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/run/describe.h"
-#include "umbra/bench/run/prepare.h"
+#include "umbra/bench/lab/describe.h"
+#include "umbra/bench/lab/prepare.h"
 #include "umbra/bench/studies/shading/shading_choice.h"
 #include "umbra/bench/studies/study_report.h"
 #include "umbra/shadows/method.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "umbra/bench/run/antialias.h"
+#include "umbra/bench/lab/antialias.h"
 #include "umbra/bench/studies/light/shading_models.h"
 #include "umbra/bench/studies/light/whitted.h"
 #include "umbra/core/render/gbuffer.h"

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "umbra/bench/run/prepare.h"
+#include "umbra/bench/lab/prepare.h"
 #include "umbra/core/image/image.h"
 #include "umbra/core/render/ask_visibility.h"
 #include "umbra/core/render/ray.h"

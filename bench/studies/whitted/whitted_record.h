@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/run/describe.h"
+#include "umbra/bench/lab/describe.h"
 
 namespace umbra {
 

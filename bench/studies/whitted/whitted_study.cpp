@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "umbra/bench/run/antialias.h"
-#include "umbra/bench/run/asked_method.h"
+#include "umbra/bench/lab/antialias.h"
+#include "umbra/bench/lab/asked_method.h"
 #include "umbra/bench/studies/light/formula_scene.h"
 #include "umbra/bench/studies/light/mirrored_light.h"
 #include "umbra/bench/studies/light/search_ways.h"

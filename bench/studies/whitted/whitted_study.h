@@ -10,8 +10,8 @@
 #include <optional>
 #include <string>
 
-#include "umbra/bench/run/describe.h"
-#include "umbra/bench/run/prepare.h"
+#include "umbra/bench/lab/describe.h"
+#include "umbra/bench/lab/prepare.h"
 #include "umbra/bench/studies/light/bodies.h"
 #include "umbra/bench/studies/light/ray_tree.h"
 #include "umbra/bench/studies/study_report.h"

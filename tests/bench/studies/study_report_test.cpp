@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "umbra/bench/out/own_files.h"
+#include "umbra/bench/base/own_files.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/studies/study_report.h"
 #include "umbra/core/base/error.h"

@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "umbra/bench/compare/compare.h"
+#include "umbra/bench/lab/antialias.h"
+#include "umbra/bench/lab/asked_method.h"
 #include "umbra/bench/pages/report_text.h"
-#include "umbra/bench/run/antialias.h"
-#include "umbra/bench/run/asked_method.h"
 #include "umbra/bench/studies/light/formula_scene.h"
 #include "umbra/bench/studies/light/whitted.h"
 #include "umbra/bench/studies/whitted/whitted_study.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "umbra/bench/run/outcome.h"
+#include "umbra/bench/lab/outcome.h"
 #include "umbra/core/scene/primitives.h"
 #include "umbra/tests/support/method_case.h"
 
