@@ -20,11 +20,6 @@ constexpr double kInside   = 1e-4;    ///< how far inside a triangle all rays ha
 // How many triangles may reach into a shaft before it is given up, and a smaller one is not tried.
 constexpr std::size_t kFew = 32, kMany = ~std::size_t{0};
 
-// Up to how many triangles a tree takes less time than the rays that it saves, whatever their number, and from how many
-// rays a point on for any number of triangles.
-constexpr std::size_t kFewTriangles = 300000;
-constexpr int kManySamples          = 16;
-
 struct DBox {
     dvec3 low{+HUGE_VAL}, high{-HUGE_VAL};
     void add(dvec3 p) { low = glm::min(low, p), high = glm::max(high, p); }
@@ -164,10 +159,6 @@ private:
     std::size_t side_count_ = 0;
     ShaftPlanes planes_;  ///< the same, and the floor
 };
-
-bool is_tree_worth_it(const Scene& scene, int samples) {
-    return samples >= kManySamples || scene.triangles.size() <= kFewTriangles;
-}
 
 std::array<dvec3, 3> LightShafts::corners(TriangleId t) const {
     const auto at = [&](int k) { return dvec3(space_.point(scene_->vertex(t, k))); };

@@ -37,10 +37,6 @@ inline constexpr std::size_t kRunsPerTile = PointTile::kPoints / 8;
 using TileStarts                          = std::array<Starts, kRunsPerTile>;
 using TileKnown                           = std::array<Known, kRunsPerTile>;
 
-/// Whether the tree of a scene's triangles takes less time than the rays that it saves, of `samples` rays a point: not
-/// for few rays in a large scene.
-[[nodiscard]] bool is_tree_worth_it(const Scene& scene, int samples);
-
 /// Shafts to one light. Const members may be called from many threads.
 class LightShafts {
 public:

@@ -80,8 +80,7 @@ struct Occluders final : Built {
         : Built(of, its_facts),
           diagonal(bounds(of).diagonal()),
           rays(tree_of_occluders(of, options.coarseness * double(diagonal))) {
-        if (options.cull == Cull::shafts && options.coarseness == 0 && !its_facts.hard_lights_only &&
-            is_tree_worth_it(of, options.samples))
+        if (options.cull == Cull::shafts && options.coarseness == 0 && !its_facts.hard_lights_only)
             shaft_tree.emplace(of, rays.space());
     }
     [[nodiscard]] std::size_t memory_bytes() const override {
