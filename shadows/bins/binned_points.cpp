@@ -39,12 +39,14 @@ void load_all(const Scene& scene, TriangleId t, LightImage::Corners& corners) {
     }
 }
 
-/// Writes eight coordinates less the centre's; `reach`: the largest magnitudes so far.
-void less(const double* __restrict at, double centre, float* __restrict near, float* __restrict reach) {
+/// Writes eight coordinates less the centre's; `reach`: the largest magnitudes so far, so much larger that 8 roundings
+/// of them in float cover `slack`, too.
+void less(const double* __restrict at, const double* __restrict slack, double centre, float* __restrict near,
+          float* __restrict reach) {
 #pragma GCC unroll 1
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
         near[lane]       = static_cast<float>(at[lane] - centre);
-        const float size = std::abs(near[lane]);
+        const float size = std::abs(near[lane]) + static_cast<float>(0x1p21 * slack[lane]);
         reach[lane]      = reach[lane] > size ? reach[lane] : size;
     }
 }
@@ -150,9 +152,9 @@ private:
             LightImage::Places places;
             image_.places(corners, u, v, places);
             float near[3][kLanes];
-            less(places.x, centre_.x, near[0], reach[0]);
-            less(places.y, centre_.y, near[1], reach[1]);
-            less(places.z, centre_.z, near[2], reach[2]);
+            less(places.x, places.slack[0], centre_.x, near[0], reach[0]);
+            less(places.y, places.slack[1], centre_.y, near[1], reach[1]);
+            less(places.z, places.slack[2], centre_.z, near[2], reach[2]);
             std::int32_t lowest = 0;  // face
             for (std::size_t lane = 0; lane < kLanes; ++lane) lowest |= places.face[lane];
             if (count == kLanes && lowest >= 0) {

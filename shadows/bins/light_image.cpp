@@ -20,9 +20,8 @@ constexpr double kRounding = 0x1p-53;
 constexpr double kApart = 4;
 dvec2 middle(int face) { return {kApart * face, 0}; }
 
-/// Points nearer to the light than this fraction of their coordinates have places with an error above kMargin / 4:
-/// positions have errors of a few roundings of these coordinates.
-constexpr double kNear = 2e-6;
+/// Roundings of the largest coordinate of a triangle's corners that one of a point's coordinates is off by, at most.
+constexpr double kRoundings = 8;
 
 /// Triangles nearer to the light than this fraction of their size, as seen from it, are not cut: corners of the outline
 /// have errors of a few roundings of that size, which must stay far below kMargin of their distance.
@@ -114,9 +113,10 @@ UMBRA_FOR_EACH_PROCESSOR void LightImage::places(const Corners& corners, const f
                                                  const float (&v)[kLanes], Places& to) const {
     const auto position = [&](std::size_t axis, double* at) {
         for (std::size_t i = 0; i < kLanes; ++i) {
-            const double a = corners[0][axis][i];
-            at[i]          = a + static_cast<double>(u[i]) * (corners[1][axis][i] - a) +
-                    static_cast<double>(v[i]) * (corners[2][axis][i] - a);
+            const double a = corners[0][axis][i], b = corners[1][axis][i], c = corners[2][axis][i];
+            at[i]             = a + static_cast<double>(u[i]) * (b - a) + static_cast<double>(v[i]) * (c - a);
+            const double ab   = std::abs(a) > std::abs(b) ? std::abs(a) : std::abs(b);
+            to.slack[axis][i] = kRoundings * kRounding * (ab > std::abs(c) ? ab : std::abs(c));
         }
     };
     position(0, to.x), position(1, to.y), position(2, to.z);
@@ -130,18 +130,19 @@ UMBRA_FOR_EACH_PROCESSOR void LightImage::places(const Corners& corners, const f
         }
         return;
     }
-    const double at_origin = size(origin_);
+    const double at_origin = kRoundings * kRounding * size(origin_);
     for (std::size_t i = 0; i < kLanes; ++i) {
         const double x = to.x[i] - origin_.x, y = to.y[i] - origin_.y, z = to.z[i] - origin_.z;
         const FaceOf of(x, y, z);
         const double farthest = std::abs(of.depth(x, y, z));
-        const double px = std::abs(to.x[i]), py = std::abs(to.y[i]), pz = std::abs(to.z[i]);
-        const double xy = px > py ? px : py, xyz = xy > pz ? xy : pz, reach = xyz > at_origin ? xyz : at_origin;
+        const double sx = to.slack[0][i], sy = to.slack[1][i], sz = to.slack[2][i];
+        const double xy = sx > sy ? sx : sy, xyz = xy > sz ? xy : sz, slack = xyz > at_origin ? xyz : at_origin;
         const double face = of.number(), per_w = 1 / farthest;
         to.u[i]     = static_cast<float>(kApart * face + of.u(x, y, z) * per_w);
         to.v[i]     = static_cast<float>(of.v(x, y, z) * per_w);
         to.depth[i] = static_cast<float>(farthest);
-        to.face[i]  = farthest > kNear * reach ? static_cast<std::int32_t>(face) : -1;
+        // Nearer to the light a place is off by more than kMargin / 4.
+        to.face[i] = farthest > 4 / kMargin * slack ? static_cast<std::int32_t>(face) : -1;
     }
 }
 

@@ -78,6 +78,7 @@ public:
     /// Eight points of triangles. Places have errors far below the margins of extents.
     struct Places {
         double x[kLanes], y[kLanes], z[kLanes];  ///< position, world space
+        double slack[3][kLanes];                 ///< how far each coordinate may be off: the corners may be far away
         float u[kLanes], v[kLanes];              ///< those of the faces do not overlap
         float depth[kLanes];        ///< along the light's direction, or along the axis of the face: larger is farther
         std::int32_t face[kLanes];  ///< -1: no place, for it could be anywhere: the point lies next to the light

@@ -22,9 +22,8 @@ struct Compared {
     std::size_t lit = 0, umbra = 0, on_boundary = 0, different = 0;
 };
 
-/// Of all pixels that the light can reach: also what is said to lie on a boundary must be the same.
-Compared against_exact(const Scene& scene) {
-    const PointBatch points = primary(scene);
+/// Of all points that the light can reach: also what is said to lie on a boundary must be the same.
+Compared against_exact(const Scene& scene, const PointBatch& points) {
     Compared compared;
     MethodCase binned("alias_free", scene), exact("exact:hard_lights=segments", scene), either("exact", scene);
     EXPECT_EQ(binned.verdict().how, How::exactly);
@@ -43,6 +42,8 @@ Compared against_exact(const Scene& scene) {
     }
     return compared;
 }
+
+Compared against_exact(const Scene& scene) { return against_exact(scene, primary(scene)); }
 
 Scene seen_from(vec3 eye, vec3 target) {
     Scene scene;
@@ -109,6 +110,50 @@ TEST(AliasFree, AgreesWhereSegmentsMeetEdges) {
     const Compared shifted = against_exact(scene);
     EXPECT_EQ(shifted.different, 0u);
     EXPECT_GT(shifted.on_boundary, 100u);
+}
+
+/// A corner of the seen triangle lies so far away that a double has no digits left for where on it a point is.
+TEST(AliasFree, AgreesWhereTheirOwnCornersAreFarAway) {
+    Scene empty     = seen_from({0.1f, 40, 0}, {0.1f, 0, 0});
+    empty.camera.up = {1, 0, 0}, empty.camera.projection = Projection::orthographic, empty.camera.height = 0.4f;
+    empty.width = 120, empty.height = 3;
+    for (const int power : {20, 40, 48, 52, 55, 58}) {
+        std::mt19937 random(static_cast<unsigned>(power));
+        const auto between = [&](float low, float high) {
+            return std::uniform_real_distribution<float>(low, high)(random);
+        };
+        const auto third = [&](float most) { return std::round(3 * between(-most, most)) / 3; };
+        Scene scene      = empty;
+        add_object(scene, "seen",
+                   {{-1.3f * std::ldexp(1.0f, power), 0, 1.0f / 3}, {0.3f, 0.1f, -7.7f}, {0.4f, -0.1f, 8.3f}}, {},
+                   {{0, 1, 2}}, 0);
+        // So that the middle of the scene is near: blocks are placed from there.
+        add_object(scene, "other side", {{1.3f * std::ldexp(1.0f, power), -9, 0}, {0.3f, -9, -8}, {0.4f, -9, 8}}, {},
+                   {{0, 1, 2}}, 0);
+        for (int n = 0; n < 10; ++n) {
+            const vec3 middle(third(1), between(0.5f, 2.5f), between(-5, 5));
+            std::vector<vec3> corners;
+            for (int k = 0; k < 4; ++k)
+                corners.push_back(middle + vec3(between(-1.5f, 1.5f), between(-1.5f, 1.5f), between(-1.5f, 1.5f)));
+            add_object(scene, "quad", corners, {}, {{0, 1, 2}, {0, 2, 3}}, 0);
+        }
+        for (int n = 0; n < 8; ++n) {
+            scene.lights.push_back(lamp_at({third(2), std::round(between(3, 9)), third(4)}));
+            scene.lights.push_back(sun_from({third(1), -1, third(1)}));
+        }
+        const Compared compared = against_exact(scene);
+        EXPECT_EQ(compared.different, 0u) << power;
+        EXPECT_GT(compared.umbra, 100u) << power;
+        PointBatch across;  // the side that is near, where no point of the batch is far away
+        across.eye = scene.camera.eye;
+        across.resize(257);
+        for (std::size_t i = 0; i < across.size(); ++i) {
+            const float u = static_cast<float>(i) / 256;
+            set_point(across, i, scene, 0, u, 1 - u);
+        }
+        face_lights(across, scene);
+        EXPECT_EQ(against_exact(scene, across).different, 0u) << power;
+    }
 }
 
 /// What lies far away, near a point and at the horizon: where binned places crowd together and floats are worst.
