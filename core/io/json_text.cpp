@@ -280,7 +280,7 @@ bool JsonText::boolean(const JsonValue& v, std::string_view what) const {
 double JsonText::number(const JsonValue& v, std::string_view what, const Range& range) const {
     const auto* d = std::get_if<double>(&v.data);
     if (!d) wrong_type(v, what, range.words);
-    if (!range.holds(*d)) fail(v, fmt::format("{} is {:g}, expected {}", what, *d, range.words));
+    if (!range.holds(*d)) fail(v, fmt::format("{} is {}, expected {}", what, *d, range.words));
     return *d;
 }
 int JsonText::integer(const JsonValue& v, std::string_view what, int min, int max) const {

@@ -52,13 +52,13 @@ bool read_colour(Tokens& tokens, std::string_view what, vec3& colour) {
     return true;
 }
 
-float read_share(Tokens& tokens, std::string_view what) {
+float read_share(Tokens& tokens, std::string_view what, IgnoredLines& skipped) {
     Token token = tokens.next_on_line();
     if (token.text == "-halo") token = tokens.next_on_line();
-    const float x = tokens.as_real(token, what);
-    if (!kShare.holds(x))
-        tokens.fail(token, fmt::format("{} is {}, expected {}", what, in_quotes(token.text), kShare.words));
-    return x;
+    const float x     = tokens.as_real(token, what);
+    const float share = std::clamp(x, 0.0f, 1.0f);
+    if (share != x) skipped.add(fmt::format("what {} has beyond 0 to 1 is", what), tokens.line());
+    return share;
 }
 
 Material finished(MtlMaterial m) {
@@ -118,6 +118,7 @@ void read_mtl(const std::filesystem::path& file, std::map<std::string, Material,
             const bool texture = key.starts_with("map_") || key == "bump" || key == "disp" || key == "decal" ||
                                  key == "refl" || key == "norm";
             skipped.add(texture ? "textures are" : fmt::format("the term {} is", in_quotes(key)), tokens.line());
+            (void)tokens.rest_of_line();  // a backslash at the end of a path joins nothing
             continue;
         }
         tokens.refuse_decimal_commas(key);
@@ -138,21 +139,24 @@ void read_mtl(const std::filesystem::path& file, std::map<std::string, Material,
             m.shininess       = tokens.as_real(token, "Ns");
             if (m.shininess < 0) tokens.fail(token, "Ns is negative, expected at least 0");
         } else if (key == "Ni") {
-            const Token token     = tokens.next_on_line();
-            m.index_of_refraction = tokens.as_real(token, "Ni");
-            if (!kPositive.holds(m.index_of_refraction))
+            const Token token = tokens.next_on_line();
+            const float index = tokens.as_real(token, "Ni");  // exporters write 0 for none
+            if (index != 0 && !kPositive.holds(index))
                 tokens.fail(token, fmt::format("Ni is {}, expected {}", in_quotes(token.text), kPositive.words));
+            if (index > 0) m.index_of_refraction = index;
         } else if (key == "Tf") {
             read = read_colour(tokens, "Tf", current.filter);
         } else if (key == "d") {
-            current.d = read_share(tokens, "d");
+            current.d = read_share(tokens, "d", skipped);
         } else if (key == "Tr") {
-            current.tr = read_share(tokens, "Tr");
+            current.tr = read_share(tokens, "Tr", skipped);
         } else {
             const Token token = tokens.next_on_line();
-            const auto illum  = tokens.as_integer(token, "illum");
-            if (illum < 0 || illum > 10) tokens.fail(token, "illum is not a known model, expected 0 to 10");
-            current.illum = int(illum);
+            const float illum = tokens.as_real(token, "illum");
+            if (illum >= 0 && illum <= 10 && illum == std::floor(illum))
+                current.illum = int(illum);
+            else
+                skipped.add("an illum that is none of 0 to 10 is", tokens.line());
         }
         if ((key == "d" || key == "Tr") && current.d && current.tr && std::abs(*current.d + *current.tr - 1) > 1e-3f)
             skipped.add("a Tr other than 1 - d is", tokens.line());

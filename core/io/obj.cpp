@@ -94,7 +94,8 @@ Corner read_corner(const Tokens& tokens, Token token, const Obj& obj) {
         const std::size_t at = token.offset + std::size_t(parts[1].data() - token.text.data());
         (void)tokens.as_integer({parts[1], at}, "the texture index");
     }
-    if (n > 2 && !parts[2].empty()) corner.normal = read_index(tokens, token, parts[2], obj.normals.size(), "normal");
+    if (n > 2 && !parts[2].empty() && parts[2] != "0")
+        corner.normal = read_index(tokens, token, parts[2], obj.normals.size(), "normal");
     return corner;
 }
 
@@ -104,10 +105,9 @@ void read_face(Tokens& tokens, Token keyword, Obj& obj, std::uint32_t group) {
         obj.corners.push_back(read_corner(tokens, token, obj));
         ++face.count;
     }
-    if (face.count < 3)
-        tokens.fail(keyword, fmt::format("a face with {} {}, expected at least 3", face.count,
-                                         face.count == 1 ? "corner" : "corners"));
-    obj.faces.push_back(face);
+    if (face.count >= 3) return obj.faces.push_back(face);
+    obj.skipped.add("faces of fewer than 3 corners are", tokens.line());
+    obj.corners.resize(face.first);
 }
 
 // The terms that may follow a position: a weight w, a colour, or both.
@@ -157,7 +157,7 @@ Obj read_lines(const SourceText& source, const Reading& reading) {
             tokens.refuse_decimal_commas("a component of a normal");
             obj.normals.push_back(reading.normal(obj.normal_check.usable(tokens.normal_on_line())));
         } else if (key == "vt") {
-            while (const Token token = tokens.next_on_line()) (void)tokens.as_real(token, "a texture coordinate");
+            while (const Token token = tokens.next_on_line()) (void)tokens.as_any_real(token, "a texture coordinate");
         } else if (key == "f" || key == "fo") {
             read_face(tokens, keyword, obj, group());
         } else if (key == "o" || key == "g" || key == "usemtl") {
@@ -165,7 +165,7 @@ Obj read_lines(const SourceText& source, const Reading& reading) {
             current                                                    = kNone;
         } else if (key == "s") {
             const Token token = tokens.next_on_line();
-            smooth            = token.text != "off" && tokens.as_integer(token, "the smoothing group") != 0;
+            smooth            = token && token.text != "0" && lowered(token.text) != "off";
             current           = kNone;
         } else if (key == "mtllib") {
             if (const Token name = tokens.rest_of_line()) obj.libraries.push_back(name);

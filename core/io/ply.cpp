@@ -173,6 +173,9 @@ public:
     double any_real(Type type, std::string_view what) {
         return ascii_ ? static_cast<double>(tokens_.any_real(what)) : number(type, what);
     }
+    /// Whether text has numbers that no element asked for.
+    bool has_more() { return ascii_ && !tokens_.at_end(); }
+    std::size_t line() { return tokens_.line(); }
     std::int64_t whole(Type type, std::string_view what) {
         last_ = ascii_ ? tokens_.offset() : bytes_.offset();
         if (!ascii_) return std::int64_t(number(type, what));
@@ -283,16 +286,16 @@ void read_element(Body& body, const Element& element, const Reading& reading, Me
             const Property& property = element.properties[p];
             const int role           = roles.of[p];
             if (!property.is_list) {
-                const bool is_normal = roles.is_vertex && role >= 3;
-                const double x =
-                    is_normal ? body.any_real(property.type, property.name) : body.real(property.type, property.name);
+                const bool is_coordinate = roles.is_vertex && role >= 0 && role < 3;
+                const double x           = is_coordinate ? body.real(property.type, property.name)
+                                                         : body.any_real(property.type, property.name);
                 if (roles.is_vertex && role != kUnused) c[std::size_t(role)] = x;
                 continue;
             }
             const std::int64_t n = body.whole(property.counting, "the length of a list");
             if (n < 0) body.fail(fmt::format("a list of length {}, expected at least 0", n));
             if (role == kUnused) {
-                for (std::int64_t k = 0; k < n; ++k) (void)body.real(property.type, property.name);
+                for (std::int64_t k = 0; k < n; ++k) (void)body.any_real(property.type, property.name);
                 continue;
             }
             read_indices(body, property, n, roles.is_strips, vertices, list);
@@ -337,6 +340,8 @@ MeshPart ply_part(const SourceText& source, const Reading& reading, std::vector<
     MeshPart part;
     Body body(source, header);
     for (const Element& e : header.elements) read_element(body, e, reading, part, vertex->count);
+    if (body.has_more())
+        warnings.push_back(fmt::format("line {}: what stands behind the last element is ignored.", body.line()));
     return part;
 }
 

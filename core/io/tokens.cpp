@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,16 @@ namespace {
 // from_chars accepts no leading plus, which C's printf writes with "%+g".
 std::string_view without_plus(std::string_view s) {
     return s.size() > 1 && s[0] == '+' && s[1] != '-' ? s.substr(1) : s;
+}
+
+/// Infinity and NaN as older C libraries of Windows print them: 1.#INF, -1.#IND, 1.#QNAN0, with as many digits as were
+/// asked for.
+std::optional<double> not_finite(std::string_view s) {
+    const bool negative = s.starts_with('-');
+    if (negative || s.starts_with('+')) s.remove_prefix(1);
+    if (s.starts_with("1.#INF")) return negative ? -HUGE_VAL : HUGE_VAL;
+    if (s.starts_with("1.#IND") || s.starts_with("1.#QNAN") || s.starts_with("1.#SNAN")) return std::nan("");
+    return std::nullopt;
 }
 
 }  // namespace
@@ -67,7 +78,8 @@ Token Tokens::read(bool across_lines) {
         }
     }
     const std::size_t begin = at_;
-    while (at_ < text.size() && !is_blank(text[at_]) && text[at_] != '\n' && text[at_] != '#') {
+    while (at_ < text.size() && !is_blank(text[at_]) && text[at_] != '\n') {
+        if (text[at_] == '#' && !not_finite(std::string_view(text).substr(begin, at_ + 5 - begin))) break;
         if (text[at_] == '\\' && at_ + 1 < text.size() && (text[at_ + 1] == '\n' || text[at_ + 1] == '\r')) break;
         ++at_;
     }
@@ -121,9 +133,9 @@ double Tokens::as_double(Token token, std::string_view what) const {
             exponent != s.npos ? s.substr(exponent + 1).starts_with('-') : s[digit] == '0' || s[digit] == '.';
         return tiny ? 0.0 : HUGE_VAL;
     }
-    if (!whole || error != std::errc())
-        fail(token, fmt::format("{} is {}, expected a number", what, in_quotes(token.text)));
-    return value;
+    if (whole && error == std::errc()) return value;
+    if (const std::optional<double> odd = not_finite(token.text)) return *odd;
+    fail(token, fmt::format("{} is {}, expected a number", what, in_quotes(token.text)));
 }
 
 double Tokens::as_number(Token token, std::string_view what) const {

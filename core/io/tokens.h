@@ -16,8 +16,8 @@ struct Token {
 };
 
 /// Lines end as ends_line() says, and a byte order mark at the beginning of the file is skipped. Tokens are separated
-/// by blanks, and by commas where `commas` is set; `#` begins a comment up to the end of its line; a backslash at the
-/// end of a line joins the next one to it.
+/// by blanks, and by commas where `commas` is set; `#` begins a comment up to the end of its line, but in 1.#IND and
+/// its kin; a backslash at the end of a line joins the next one to it.
 class Tokens {
 public:
     /// `source` must outlive this object.

@@ -27,9 +27,10 @@ Lens read_lens(const JsonText& json, const JsonValue& v, std::size_t index, std:
         if (!x) json.fail(*p, fmt::format("{} has no {}", what, key));
         return json.number(*x, key, range);
     };
+    constexpr Range kAnyFar{kPositive.min, HUGE_VAL, "a positive number"};  // no picture depends on it
     const double znear = perspective ? need("znear", kPositive) : need("znear", kNotNegative);
     if (const JsonValue* zfar = find_member(*p, "zfar"); zfar || !perspective) {
-        const double z = zfar ? json.number(*zfar, "zfar", kPositive) : need("zfar", kPositive);
+        const double z = zfar ? json.number(*zfar, "zfar", kAnyFar) : need("zfar", kAnyFar);
         if (z <= znear) json.fail(*zfar, fmt::format("zfar {:g} is not beyond znear {:g}", z, znear));
     }
     if (perspective) {

@@ -24,6 +24,8 @@ GltfFile open_gltf(const std::filesystem::path& file) {
         throw InputError(
             fmt::format("{}: byte 0: does not begin with the letters glTF, as every .glb does", source.file));
     if (!binary) {
+        constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+        if (source.text.starts_with(kByteOrderMark)) source.text.erase(0, kByteOrderMark.size());
         document.json = std::move(source);
         return document;
     }
@@ -76,10 +78,11 @@ void check_version(const JsonText& json) {
 // Extensions that are needed to understand the geometry must be known; those that only change the appearance may be
 // ignored.
 void check_extensions(const JsonText& json, std::vector<std::string>& warnings) {
-    static constexpr std::array<std::string_view, 9> kRead{
+    static constexpr std::array<std::string_view, 10> kRead{
         "KHR_lights_punctual",        "EXT_lights_area",     "EXT_mesh_gpu_instancing",
         "KHR_mesh_quantization",      "KHR_materials_unlit", "KHR_materials_emissive_strength",
-        "KHR_materials_transmission", "KHR_materials_ior",   "KHR_materials_pbrSpecularGlossiness"};
+        "KHR_materials_transmission", "KHR_materials_ior",   "KHR_materials_pbrSpecularGlossiness",
+        "KHR_node_visibility"};
     static constexpr std::array<std::string_view, 5> kAppearance{"KHR_texture_", "EXT_texture_", "MSFT_texture_",
                                                                  "KHR_materials_", "KHR_animation_"};
     const auto is_read = [](std::string_view name) {

@@ -234,9 +234,18 @@ Cutout read_cutout(const JsonText& json, GltfData& data, const JsonValue& textur
 
     const JsonValue& source = image_of(json, chosen);
     const MemoryFile file(data.image(source));
-    const Image image = read_image(file.path()).image;
-    cutout.width      = image.width;
-    cutout.height     = image.height;
+    const Image image = [&] {
+        try {
+            return read_image(file.path()).image;
+        } catch (const InputError& e) {
+            std::string message = e.what();  // names the file that nobody else sees
+            for (std::size_t at = 0; (at = message.find(file.path().string())) != message.npos;)
+                message.replace(at, file.path().string().size(), "this image");
+            json.fail(source, message);
+        }
+    }();
+    cutout.width  = image.width;
+    cutout.height = image.height;
     const auto alpha =
         std::size_t(std::find(image.channels.begin(), image.channels.end(), "A") - image.channels.begin());
     for (std::size_t i = 0; i < image.pixels(); ++i)

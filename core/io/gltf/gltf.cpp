@@ -34,6 +34,7 @@
 //                                   inverse bind matrices B_k; the transform of the mesh's own node does not count
 //   textures, vertex colours, animations   not read, with a warning
 //   EXT_mesh_gpu_instancing         an object for each instance and primitive
+//   KHR_node_visibility             what is not visible is left out, with all below it
 //   points, lines                   left out, with a warning
 //   extras.umbra                    extras.cpp
 //

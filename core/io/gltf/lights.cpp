@@ -16,6 +16,8 @@ namespace {
 
 // Exporters write pi/2 with few digits, and equal angles for a hard edge.
 constexpr Range kWrittenConeAngle{kConeAngleRadians.min, 1.571, kConeAngleRadians.words};
+// They also write the largest float, or 0, for a light without a limit.
+constexpr Range kWrittenRange{0, HUGE_VAL, "a number of at least 0"};
 constexpr double kSameAngle = 1e-6;  ///< relative
 
 void read_cone(const JsonText& json, const JsonValue& spot, std::string_view what, Spot& cone, GltfNotes& notes) {
@@ -79,7 +81,11 @@ std::optional<Light> read_punctual_light(const JsonText& json, const JsonValue& 
     light.specular     = light.diffuse;
     light.attenuation  = {0, 0, 1, false};
     if (const JsonValue* range = find_member(v, "range")) {
-        light.range = static_cast<float>(json.number(*range, "range", kPositive));
+        const double given = json.number(*range, "range", kWrittenRange);
+        if (given == 0)
+            warnings.push_back(fmt::format("{} \"{}\" has the range 0, which the extension forbids: it has no limit.",
+                                           what, light.name));
+        light.range = given > kMaxCoordinate ? 0 : static_cast<float>(given);
         if (light.kind == LightKind::directional) {
             light.range = 0;
             warnings.push_back(fmt::format("{} \"{}\" is directional: its range is ignored.", what, light.name));

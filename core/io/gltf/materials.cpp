@@ -12,6 +12,17 @@
 namespace umbra {
 namespace {
 
+double as_share(double x, GltfNotes& notes) {
+    const double share = std::clamp(x, 0.0, 1.0);
+    notes.no_share     = notes.no_share || share != x;
+    return share;
+}
+
+double share_or(const JsonText& json, const JsonValue* object, std::string_view key, double fallback,
+                GltfNotes& notes) {
+    return as_share(number_or(json, object, key, kAnyNumber, fallback), notes);
+}
+
 void set_lobe(Material& m, dvec3 f0, double roughness) {
     const double a2 = std::pow(std::max(roughness, 1e-3), 4);
     m.k_s           = vec3(f0 * std::min(1.0, 1 / (4 * a2)));
@@ -53,7 +64,7 @@ AlphaMask read_alpha_mask(const JsonText& json, const JsonValue& material) {
     const JsonValue* gloss  = extension(json, material, "KHR_materials_pbrSpecularGlossiness");
     const JsonValue* values = gloss ? gloss : find_member(material, "pbrMetallicRoughness");
     const JsonValue* factor = values ? find_member(*values, gloss ? "diffuseFactor" : "baseColorFactor") : nullptr;
-    const double alpha      = factor ? numbers(json, *factor, "the factor", 4, kShare)[3] : 1;
+    const double alpha      = factor ? std::clamp(numbers(json, *factor, "the factor", 4, kAnyNumber)[3], 0.0, 1.0) : 1;
     if (alpha < cutoff) return {true, nullptr, 0};
     if (!values || cutoff == 0) return {};
     return {false, find_member(*values, gloss ? "diffuseTexture" : "baseColorTexture"), cutoff / alpha};
@@ -72,16 +83,18 @@ Material read_gltf_material(const JsonText& json, const JsonValue& v, std::size_
     const JsonValue* colour = gloss ? find_member(*gloss, "diffuseFactor")
                               : pbr ? find_member(*pbr, "baseColorFactor")
                                     : nullptr;
-    if (colour) base = numbers(json, *colour, gloss ? "diffuseFactor" : "baseColorFactor", 4, kShare);
+    if (colour) base = numbers(json, *colour, gloss ? "diffuseFactor" : "baseColorFactor", 4, kAnyNumber);
+    for (double& x : base) x = as_share(x, notes);
     const dvec3 c(base[0], base[1], base[2]);
     m.O_d = vec3(c);
     if (gloss) {
-        const dvec3 f0 = vector_or(json, gloss, "specularFactor", kShare, dvec3(1));
-        m.k_d          = vec3(static_cast<float>(1 - std::max({f0.x, f0.y, f0.z})));
-        set_lobe(m, f0, 1 - number_or(json, gloss, "glossinessFactor", kShare, 1));
+        dvec3 f0 = vector_or(json, gloss, "specularFactor", kAnyNumber, dvec3(1));
+        for (int k = 0; k < 3; ++k) f0[k] = as_share(f0[k], notes);
+        m.k_d = vec3(static_cast<float>(1 - std::max({f0.x, f0.y, f0.z})));
+        set_lobe(m, f0, 1 - share_or(json, gloss, "glossinessFactor", 1, notes));
     } else {
-        const double metallic  = number_or(json, pbr, "metallicFactor", kShare, 1);
-        const double roughness = number_or(json, pbr, "roughnessFactor", kShare, 1);
+        const double metallic  = share_or(json, pbr, "metallicFactor", 1, notes);
+        const double roughness = share_or(json, pbr, "roughnessFactor", 1, notes);
         m.k_d                  = vec3(static_cast<float>(0.96 * (1 - metallic)));
         set_lobe(m, 0.04 * (1 - metallic) + c * metallic, roughness);
     }
@@ -96,7 +109,7 @@ Material read_gltf_material(const JsonText& json, const JsonValue& v, std::size_
         m.k_a = m.k_d = m.k_s = vec3(0);
     }
     m.transmit = static_cast<float>(
-        number_or(json, extension(json, v, "KHR_materials_transmission"), "transmissionFactor", kShare, 0));
+        share_or(json, extension(json, v, "KHR_materials_transmission"), "transmissionFactor", 0, notes));
     if (m.transmit > 0) m.transmit_colour = vec3(glm::min(c, dvec3(1)));
     // Where the file is silent, glTF has 1.5, which only matters to materials that transmit.
     const JsonValue* given = extension(json, v, "KHR_materials_ior");

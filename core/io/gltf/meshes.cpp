@@ -129,7 +129,8 @@ std::optional<Primitive> read_primitive(const JsonText& json, const GltfData& da
             (index->component_type != 5121 && index->component_type != 5123 && index->component_type != 5125))
             json.fail(*i, "indices are not an accessor of type SCALAR of 5121, 5123 or 5125");
     }
-    if (extension(json, v, "KHR_draco_mesh_compression") && position && position->bytes.empty())
+    const auto is_away = [](const GltfAccessor* accessor) { return accessor && accessor->bytes.empty(); };
+    if (extension(json, v, "KHR_draco_mesh_compression") && (is_away(position) || is_away(index)))
         json.fail(v, what + " is compressed by KHR_draco_mesh_compression, expected an export without it");
     if (!position) {
         notes.no_position = true;

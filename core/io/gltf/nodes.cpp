@@ -45,9 +45,13 @@ dmat4 local_transform(const JsonText& json, const JsonValue& v, const std::strin
     const auto x = numbers(json, *matrix, "matrix", 16, kAnyNumber);
     dmat4 m;
     for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = x[std::size_t(i)];
-    if (m[0][3] != 0 || m[1][3] != 0 || m[2][3] != 0 || m[3][3] != 1)
-        json.fail(*matrix, fmt::format("the last row of matrix is ({:g}, {:g}, {:g}, {:g}), expected (0, 0, 0, 1)",
-                                       m[0][3], m[1][3], m[2][3], m[3][3]));
+    constexpr double kRounding = 1e-5;  // of a product of matrices in float
+    for (int k = 0; k < 4; ++k) {
+        if (!(std::abs(m[k][3] - (k == 3 ? 1 : 0)) <= kRounding))
+            json.fail(*matrix, fmt::format("the last row of matrix is ({}, {}, {}, {}), expected (0, 0, 0, 1)", m[0][3],
+                                           m[1][3], m[2][3], m[3][3]));
+        m[k][3] = k == 3 ? 1 : 0;
+    }
     return m;
 }
 

@@ -9,6 +9,9 @@ void GltfNotes::warn(std::vector<std::string>& warnings) const {
     if (vertex_colours) warnings.emplace_back("Colours of vertices are ignored.");
     if (emissive_above_one)
         warnings.emplace_back("An emissiveFactor is above 1, which the format forbids: its value is used as given.");
+    if (no_share)
+        warnings.emplace_back(
+            "A factor of a material is not from 0 to 1, as the format has it: the nearer end is used.");
     if (cut_away > 0)
         warnings.push_back(fmt::format(
             "{} primitives are left out: the alpha of their material is below its alphaCutoff (alphaMode MASK).",

@@ -13,6 +13,7 @@ namespace umbra {
 struct GltfNotes {
     bool textures = false, vertex_colours = false, no_position = false;
     bool emissive_above_one      = false;
+    bool no_share                = false;        ///< a factor that is not from 0 to 1
     std::size_t points_and_lines = 0;            ///< primitives
     std::size_t cut_away         = 0;            ///< primitives of which alphaMode MASK leaves nothing
     std::size_t without_joints   = 0;            ///< primitives

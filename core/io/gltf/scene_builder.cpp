@@ -47,6 +47,9 @@ void GltfSceneBuilder::place_trees(const std::vector<Node>& nodes, const std::ve
     while (!open.empty()) {
         const std::size_t i = open.back();
         open.pop_back();
+        const JsonValue* seen = extension(json_, *nodes[i].json, "KHR_node_visibility");
+        if (const JsonValue* v = seen ? find_member(*seen, "visible") : nullptr; v && !json_.boolean(*v, "visible"))
+            continue;
         place_node(nodes[i], scene_from_node[i]);
         open.insert(open.end(), nodes[i].children.rbegin(), nodes[i].children.rend());
     }
@@ -87,7 +90,7 @@ void GltfSceneBuilder::place_node(const Node& node, const dmat4& m) {
         for (std::size_t o = first; o < scene_.objects.size(); ++o) scene_.objects[o].switches = extras.switches;
     }
     if (const JsonValue* camera = find_member(v, "camera"))
-        place_camera(index_into(json_, *camera, "camera", parts_.lenses.size()), m);
+        place_camera(index_into(json_, *camera, "camera", parts_.lenses.size()), name, m);
     if (const auto* light = light_of(node, kPunctualLights, parts_.lights)) place_light(node, *light, name, m);
     if (const auto* light = light_of(node, kAreaLights, parts_.area_lights)) place_light(node, *light, name, m);
     if (extras.light) {
@@ -96,7 +99,8 @@ void GltfSceneBuilder::place_node(const Node& node, const dmat4& m) {
     }
 }
 
-void GltfSceneBuilder::place_camera(std::size_t camera, const dmat4& m) {
+void GltfSceneBuilder::place_camera(std::size_t camera, const std::string& node_name, const dmat4& m) {
+    if (!direction(m, 2, "camera", node_name) || !direction(m, 1, "camera", node_name)) return;
     if (!lens_) {
         lens_             = parts_.lenses[camera];
         camera_transform_ = m;
@@ -112,8 +116,12 @@ void GltfSceneBuilder::place_light(const Node& node, std::optional<Light> light,
     if (!light) return;
     if (light->name.empty()) light->name = node_name;
     light->position = vec3(dvec3(m[3]));
-    if (light->kind != LightKind::point) light->direction = vec3(direction(m, 2, -1, "light"));
-    if (is_area(light->kind)) scale_area_light(m, direction(m, 0, 1, "light"), *light);
+    if (light->kind != LightKind::point) {
+        const auto back = direction(m, 2, "light", node_name), along = direction(m, 0, "light", node_name);
+        if (!back || !along) return;
+        light->direction = vec3(-*back);
+        if (is_area(light->kind)) scale_area_light(m, *along, *light);
+    }
     add_light(*node.json, std::move(*light));
 }
 
@@ -166,12 +174,12 @@ void GltfSceneBuilder::aim_camera() {
     if (!lens_) return;
     Camera camera       = lens_->camera;
     const dvec3 eye     = dvec3(camera_transform_[3]);
-    const dvec3 forward = direction(camera_transform_, 2, -1, "camera");
+    const dvec3 forward = -*direction(camera_transform_, 2, "camera", "");
     const Box box       = bounds(scene_);
     const double middle = box.empty() ? 0 : glm::dot(dvec3(box.centre()) - eye, forward);
     camera.eye          = vec3(eye);
     camera.target       = vec3(eye + forward * std::max({middle, 1e-3 * glm::length(eye), middle > 0 ? 0.0 : 1.0}));
-    camera.up           = vec3(direction(camera_transform_, 1, 1, "camera"));
+    camera.up           = vec3(*direction(camera_transform_, 1, "camera", ""));
     scene_.camera       = camera;
     read_.has_camera    = true;
     set_picture_size(scene_, lens_->aspect);
@@ -186,13 +194,14 @@ const std::optional<Light>* GltfSceneBuilder::light_of(const Node& node, std::st
     return &lights[index_into(json_, *v, "light", lights.size())];
 }
 
-dvec3 GltfSceneBuilder::direction(const dmat4& m, int axis, double sign, std::string_view whose) const {
-    const dvec3 d  = dvec3(m[axis]) * sign;
+std::optional<dvec3> GltfSceneBuilder::direction(const dmat4& m, int axis, std::string_view whose,
+                                                 const std::string& node_name) {
+    const dvec3 d(m[axis]);
     const double l = glm::length(d);
-    if (!(l > 0) || !std::isfinite(l))
-        throw InputError(fmt::format("{}: the transform of a {}'s node flattens, which leaves no direction",
-                                     json_.source().file, whose));
-    return d / l;
+    if (l > 0 && std::isfinite(l)) return d / l;
+    scene_.warnings.push_back(fmt::format(
+        "The {} of node \"{}\" has no direction, since the node is scaled to 0: it is left out.", whose, node_name));
+    return std::nullopt;
 }
 
 std::uint32_t GltfSceneBuilder::material_of(const Primitive& primitive) {

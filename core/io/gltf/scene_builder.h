@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "umbra/core/io/gltf/cameras.h"
@@ -45,7 +46,7 @@ public:
 
 private:
     void place_node(const Node& node, const dmat4& m);
-    void place_camera(std::size_t camera, const dmat4& m);
+    void place_camera(std::size_t camera, const std::string& node_name, const dmat4& m);
     void place_light(const Node& node, std::optional<Light> light, const std::string& node_name, const dmat4& m);
     void add_mesh(const JsonValue& at, const std::string& name, const std::vector<Primitive>& primitives,
                   const Pose& pose);
@@ -56,7 +57,9 @@ private:
     /// The light of the node by an extension; null where it has none.
     [[nodiscard]] const std::optional<Light>* light_of(const Node& node, std::string_view extension_name,
                                                        const std::vector<std::optional<Light>>& lights) const;
-    [[nodiscard]] dvec3 direction(const dmat4& m, int axis, double sign, std::string_view whose) const;
+    /// An axis of the node, of length 1; none, and a warning, where the node is scaled to 0.
+    [[nodiscard]] std::optional<dvec3> direction(const dmat4& m, int axis, std::string_view whose,
+                                                 const std::string& node_name);
     [[nodiscard]] std::uint32_t material_of(const Primitive& primitive);
 
     const JsonText& json_;

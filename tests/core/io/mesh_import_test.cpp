@@ -140,12 +140,46 @@ TEST(MeshNormals, WhatIsNotFiniteBecomesTheFaces) {
     }
 }
 
+/// As older C libraries of Windows print it; the numbers behind it keep their places.
+TEST(MeshNormals, NotANumberHasManySpellings) {
+    const TemporaryFolder folder;
+    for (const char* odd : {"nan", "-nan(ind)", "-1.#IND", "1.#QNAN0", "+1.#SNAN", "1.#INF00", "-1.#INF"}) {
+        const Scene scene = load_scene(folder.write(
+            "a.off", std::string("NOFF\n3 1 0\n0 0 0 ") + odd + " 0 1\n1 0 0 0 0 2\n0 1 0 0 0 1 # last\n3 0 1 2\n"));
+        ASSERT_EQ(scene.triangles.size(), 1u) << odd;
+        EXPECT_EQ(scene.vertex(0, 2), vec3(0, 1, 0)) << odd;
+        EXPECT_TRUE(warns(scene, "1 of 3 vertex normals")) << odd;
+    }
+    EXPECT_NE(refusal(folder.write("b.off", "OFF\n3 1 0\n0 0 1.#IND\n1 0 0\n0 1 0\n3 0 1 2\n")).find("\"1.#IND\""),
+              std::string::npos);
+}
+
+TEST(Ply, PropertiesThatNobodyUsesMayBeAnyNumbersAndLeftOverOnesAreTold) {
+    const TemporaryFolder folder;
+    const std::string head =
+        "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float scalar_intensity\n"
+        "element face 1\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n";
+    const std::string text = "0 0 0 nan\n1 0 0 1e30\n0 1 0 -inf\n3 0 1 2 2 nan 1e30\n";
+    std::string binary;
+    for (const float x : {0.f, 0.f, 0.f, std::nanf(""), 1.f, 0.f, 0.f, 1e30f, 0.f, 1.f, 0.f, -kInfinity})
+        binary += bytes_of(x);
+    binary += '\3' + bytes_of(0u) + bytes_of(1u) + bytes_of(2u) + '\2' + bytes_of(std::nanf("")) + bytes_of(1e30f);
+    for (const auto& file : {folder.write("a.ply", "ply\nformat ascii 1.0\n" + head + text),
+                             folder.write("b.ply", "ply\nformat binary_little_endian 1.0\n" + head + binary),
+                             folder.write("c.ply", "ply\nformat ascii 1.0\n" + head + text + "7 8\n")}) {
+        const Scene scene = load_scene(file);
+        EXPECT_EQ(scene.vertex(0, 2), vec3(0, 1, 0)) << file;
+        EXPECT_EQ(warns(scene, "what stands behind the last element is ignored"), file.filename() == "c.ply") << file;
+    }
+}
+
 TEST(Stl, NormalsAreIgnoredWhateverTheyAre) {
     const TemporaryFolder folder;
     std::string binary = binary_stl(1, 1);
     binary.replace(84, 4, bytes_of(std::nanf("")));
-    for (const auto& file :
-         {folder.write("a.stl", with(kStl, "normal 0 0 1", "normal nan nan nan")), folder.write("b.stl", binary)}) {
+    for (const auto& file : {folder.write("a.stl", with(kStl, "normal 0 0 1", "normal nan nan nan")),
+                             folder.write("c.stl", with(kStl, "normal 0 0 1", "normal -1.#IND -1.#IND 1.#INF")),
+                             folder.write("b.stl", binary)}) {
         const Scene scene = load_scene(file);
         EXPECT_EQ(scene.triangles.size(), 1u);
         EXPECT_FALSE(warns(scene, "normals"));
