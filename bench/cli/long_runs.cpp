@@ -72,9 +72,11 @@ ScenesDone compare_on_terminal(const std::vector<fs::path>& files, CompareOption
         for (fs::path& folder : output.then()) folders.push_back(std::move(folder));
     }
     write_pages("");
-    if (output.as_json)
-        for (const std::string& name : done.names) print_out("{}", bytes_of(options.out / name / "results.json"));
-    else if (!common.quiet && !done.names.empty())
+    if (output.as_json) {
+        std::vector<std::string> records;
+        for (const std::string& name : done.names) records.push_back(bytes_of(options.out / name / "results.json"));
+        print_records(records);
+    } else if (!common.quiet && !done.names.empty())
         print_out("{}\n", (options.out / "index.html").string());
     for (const std::string& message : done.failed) print_error("{}\n", message);
     for (const std::string& message : done.stopped) print_error("{}\n", message);

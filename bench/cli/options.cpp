@@ -2,6 +2,7 @@
 #include "umbra/bench/contenders/contender.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -79,7 +80,7 @@ void add_answer_files(CLI::App& app, std::vector<MethodChoice>& choices) {
            [&choices](const std::vector<std::string>& files) {
                for (const std::string& file : files) choices.push_back(add_answers(file));
            },
-           "S_j that was made elsewhere, as a method of that name (.npy, .exr; FILE:measure=irradiance)")
+           "S_j that was made elsewhere, as a method of that name (.npy, .exr; FILE:measure=irradiance); may be repeated")
         ->type_name("NAME=FILE")
         ->allow_extra_args(false)
         ->take_all();
@@ -131,6 +132,13 @@ void add_budget(CLI::App& app, Budget& budget) {
 
 void add_output(CLI::App& app, std::filesystem::path& out, const std::string& about) {
     app.add_option("-o,--output", out, about)->type_name("DIR")->required();
+}
+
+void print_records(const std::vector<std::string>& texts) {
+    if (texts.size() == 1)
+        print_out("{}", texts[0]);
+    else
+        print_out("[\n{}]\n", fmt::join(texts, ",\n"));
 }
 
 void add_json(CLI::App& app, bool& as_json, const std::string& instead_of) {

@@ -100,6 +100,9 @@ auto on_terminal(const Common& common, Options& options, const Work& work) {
     return work();
 }
 
+/// Prints texts of JSON as one: one of them as it is, several as a list.
+void print_records(const std::vector<std::string>& texts);
+
 /// The record where it is asked for, otherwise text(), which is not called where --quiet leaves it out.
 template <class Text>
 void print_record(bool as_json, const Common& common, const Json& record, const Text& text) {

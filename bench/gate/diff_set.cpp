@@ -97,9 +97,10 @@ DiffSet diff_set(const fs::path& a, const fs::path& b, const DiffOptions& option
         set.images.push_back(diff(a, b, of));
         return set;
     }
-    std::set<fs::path> names;
-    if (is_there(a)) names = images_in(a);
-    if (is_there(b)) names.merge(images_in(b));
+    if (!is_there(b))
+        throw InputError(fmt::format("{}: no such folder, expected what is held against {}", set.b, set.a));
+    std::set<fs::path> names = images_in(b);
+    if (is_there(a)) names.merge(images_in(a));
     if (names.empty()) throw InputError(fmt::format("{}: holds no images, nor does {}", set.a, set.b));
     for (const fs::path& name : names) {
         if (progress) progress(name.string());

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <regex>
@@ -65,10 +66,15 @@ ScenePage recorded_scene(const Field& root, const fs::path& file) {
     return page;
 }
 
+/// Members of the results.json of commands whose pages are no part of a report.
+constexpr std::array kOtherPages{"bias", "motion", "growth", "frames"};
+
 /// A results.json of a compared scene, and its place; nothing where it is of another command.
 std::optional<ScenePage> read_scene(const Field& root, const fs::path& file) {
-    for (const char* other : {"ladders", "bias", "sweep", "sweeps", "motion", "growth", "experiments"})
-        if (root[other].present()) return std::nullopt;
+    const auto is_in = [&](const char* member) { return root[member].present(); };
+    if (std::ranges::any_of(kOtherPages, is_in)) return std::nullopt;
+    for (const char* other : {"ladders", "sweep", "sweeps", "experiments"})
+        if (is_in(other)) return std::nullopt;
     if (!root["methods"].present()) root["methods"].refuse("an array");
     Results results = from_record<Results>(root);
     ScenePage scene = recorded_scene(root, file);
@@ -156,8 +162,11 @@ Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
     Found found;
     for (const fs::path& dir : dirs) {
         const auto first = std::ptrdiff_t(found.scenes.size());
+        bool is_shown    = false;
         for (const fs::path& file : results_files(dir)) {
             const Field root = read_results(file);
+            is_shown         = is_shown ||
+                       std::ranges::none_of(kOtherPages, [&](const char* member) { return root[member].present(); });
             // A report that was made before holds copies.
             if (root["ladders"].present() && std::ranges::none_of(found.ladders, [&](const LadderFolder& other) {
                     return bytes_of(other.data / "results.json") == bytes_of(file);
@@ -178,6 +187,11 @@ Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
                     found.scenes.push_back(std::move(*scene));
             }
         }
+        if (!is_shown)
+            throw InputError(
+                fmt::format("{}: holds what another command wrote, with a page of its own, expected a "
+                            "folder of compare, ladder, sweep, shading, whitted or radiosity",
+                            dir.string()));
         // From simple to large, the order of a lecture.
         std::stable_sort(found.scenes.begin() + first, found.scenes.end(),
                          [](const ScenePage& a, const ScenePage& b) { return a.triangles < b.triangles; });

@@ -90,6 +90,8 @@ TEST_F(Cli, UsageErrorsEndWithSixtyFour) {
                                   "sweep umbra_penumbra --list=-1 -o " + file("a"),
                                   "sweep umbra_penumbra --pack '' -o " + file("a"),
                                   "why umbra_penumbra '' 3",
+                                  "recommend umbra_penumbra --max rmse=0.1 --seconds nan",
+                                  "recommend umbra_penumbra --max rmse=0.1 --seconds=-1",
                                   "completion fish",
                                   diff + "--fail -1",
                                   diff + "--fail nan",
@@ -459,6 +461,9 @@ TEST_F(Cli, ListPrintsTheSchemasOfRecords) {
              {"bias", out}, {"brdf", ""}, {"radiosity", out}, {"shading", out}, {"whitted", out}}) {
         const Answer printed = umbra(study + " " + kScene + more + " --json");
         EXPECT_TRUE(umbra::fits(umbra("list --schema " + study).output, printed.output)) << study;
+        if (study == "bias") {
+            EXPECT_EQ(umbra("report " + file("studies")).exit_code, 4) << "its page stays";
+        }
         EXPECT_FALSE(umbra::fits(umbra("list --schema truth").output, printed.output)) << study;
     }
     ASSERT_EQ(umbra("truth " + kScene + " --size 16x9 -o " + file("truth")).exit_code, 0);
@@ -525,7 +530,12 @@ TEST_F(Cli, ProgramsFromOutsideAreCheckedAndThenNamed) {
     const Answer broken = here("list methods");
     EXPECT_TRUE(contains(broken.output, "\"command\" is missing")) << broken.output;
     EXPECT_EQ(here("truth -o set").exit_code, 64);
-    EXPECT_EQ(here("truth " + kScene + " -o set --withhold set").exit_code, 64);
+    for (const char* folders : {"-o set --withhold set", "-o set --withhold ./set/", "-o set --withhold set/in",
+                                "-o set/in --withhold set"}) {
+        EXPECT_EQ(here("truth " + kScene + " " + folders).exit_code, 64) << folders;
+        EXPECT_FALSE(fs::exists(file("set"))) << folders;
+    }
+    EXPECT_EQ(here("score set a=b a=c").exit_code, 64) << "one name twice";
     EXPECT_EQ(here("score set").exit_code, 64);
     EXPECT_EQ(here("score set a=b").exit_code, 4);
     EXPECT_EQ(
@@ -696,6 +706,9 @@ TEST_F(Cli, DiffExitCodes) {
     EXPECT_EQ(umbra("diff " + file("a.png") + " " + file("b.png") + " --fail 1").exit_code, 1);
     EXPECT_EQ(umbra("diff " + file("a.png") + " " + file("c.png")).exit_code, 3);
     EXPECT_EQ(umbra("diff " + file("a.png") + " " + file("none.png")).exit_code, 4);
+    const Answer nowhere = umbra("diff " + folder_.string() + " " + file("none"));
+    EXPECT_EQ(nowhere.exit_code, 4);
+    EXPECT_FALSE(contains(nowhere.output, "rm --")) << "a mistyped folder accepts nothing";
     const nlohmann::json record =
         nlohmann::json::parse(umbra("diff " + file("a.png") + " " + file("b.png") + " --json").output);
     for (const char* key : {"mae", "rmse", "max", "psnr", "ssim", "flip", "worst"})
@@ -908,8 +921,12 @@ TEST_F(Cli, ScenesOfOneNameInAnyCaseAreToldApartByEveryCommand) {
         const Answer twice = umbra(start + file("a/../a/X.json") + rest);
         EXPECT_EQ(twice.exit_code, 64) << command << '\n' << twice.output;
         EXPECT_TRUE(contains(twice.output, "is given twice, expected each scene once")) << command << twice.output;
-        const Answer both = umbra(start + file("b/x.json") + rest);
+        const bool is_listed = name == "compare" || name == "sweep";
+        const Answer both    = umbra(start + file("b/x.json") + rest + (is_listed ? " --json" : ""));
         ASSERT_EQ(both.exit_code, 0) << command << '\n' << both.output;
+        if (is_listed) {
+            EXPECT_EQ(nlohmann::json::parse(both.output).size(), 2u) << "records of several scenes are a list";
+        }
         EXPECT_EQ(names_in(out, name), (std::vector<std::string>{"X", "x-2"})) << command;
     }
 }

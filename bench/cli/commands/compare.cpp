@@ -1,6 +1,7 @@
 #include "umbra/bench/compare/compare.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -36,7 +37,10 @@ Action compare_command(CLI::App& app, const Common& common) {
         if (line->scenes.empty()) throw UsageError("compare: SCENE is required");
         if (line->scenes.size() > 1 &&
             std::ranges::any_of(line->options.choices, [](const auto& c) { return !c.info->is_timed; }))
-            throw UsageError(fmt::format("--answers: a file is of one scene, and there are {}", line->scenes.size()));
+            throw UsageError(
+                fmt::format("--answers: a file is of one scene, and there are {} ({}); of several files "
+                            "each has its own --answers",
+                            line->scenes.size(), fmt::join(line->scenes, ", ")));
         check_writable_beside(line->options.out);
         const PlaceLock lock  = PlaceLock::inside(line->options.out);
         const ScenesDone done = compare_on_terminal(scene_files(line->scenes, common.up), line->options, common,

@@ -102,7 +102,7 @@ Action recommend_command(CLI::App& app, const Common& common) {
                    "After which the search begins with no further setting, those of earlier questions to the folder "
                    "included; views, turns and what has begun come on top")
         ->capture_default_str()
-        ->check(CLI::NonNegativeNumber)
+        ->check(number_in(0, 1e9, "a number from 0 to 1000000000"))
         ->type_name("S");
     add_size(app, line->cell.size);
     add_reference(app, line->cell.reference, line->cell.points);

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "umbra/bench/cli/options.h"
 #include "umbra/bench/contenders/truth_set.h"
 #include "umbra/core/base/error.h"
@@ -21,7 +23,13 @@ Action score_command(CLI::App& app, const Common& common) {
     add_json(app, line->as_json);
     return [line, &common] {
         std::vector<NamedAnswers> answers;
-        for (const std::string& text : line->answers) answers.push_back(parse_answers(text));
+        for (const std::string& text : line->answers) {
+            NamedAnswers named = parse_answers(text);
+            if (std::ranges::find(answers, named.name, &NamedAnswers::name) != answers.end())
+                throw UsageError(
+                    fmt::format("{}: other answers are called {}, too, expected each name once", text, named.name));
+            answers.push_back(std::move(named));
+        }
         const std::vector<ScoreRecord> scores = score(line->set, answers);
         Json record                           = to_record(head_record(common.command));
         for (const ScoreRecord& each : scores) record["scores"].push_back(to_record(each));

@@ -72,7 +72,9 @@ int sweep(SweepLine line, const Common& common) {
     }
     const SweepDone done = sweep_on_terminal(options, common);
     if (line.as_json) {
-        for (const SweepResults& record : done.records) print_out("{}", json_text(to_record(record)));
+        std::vector<std::string> records;
+        for (const SweepResults& record : done.records) records.push_back(json_text(to_record(record)));
+        print_records(records);
     } else if (!common.quiet) {
         for (const SweepResults& r : done.records) print_out("{}", front_in_words(r.scene.name, r.sweep));
         print_out("{}, {} of them computed now\n{}\n", counted(static_cast<double>(done.cells), "cell"), done.computed,

@@ -7,6 +7,18 @@
 #include "umbra/core/base/error.h"
 
 namespace umbra {
+namespace {
+
+/// Whether a folder is another one, or would lie in it.
+bool is_in(const std::filesystem::path& folder, const std::filesystem::path& other) {
+    const auto whole = [](const std::filesystem::path& p) {
+        return std::filesystem::weakly_canonical(std::filesystem::absolute(p / ""));
+    };
+    const auto relative = (whole(folder) / "").lexically_relative(whole(other) / "");
+    return !relative.empty() && *relative.begin() != "..";
+}
+
+}  // namespace
 
 Action truth_command(CLI::App& app, const Common& common) {
     struct Line {
@@ -23,9 +35,8 @@ Action truth_command(CLI::App& app, const Common& common) {
     return [line, &common] {
         TruthOrder order = line->order;
         if (line->scenes.empty()) throw UsageError("truth: SCENE is required");
-        if (!order.withhold.empty() &&
-            std::filesystem::weakly_canonical(order.withhold) == std::filesystem::weakly_canonical(order.out))
-            throw UsageError("--withhold: is the folder of -o, expected another one for the answers");
+        if (!order.withhold.empty() && (is_in(order.withhold, order.out) || is_in(order.out, order.withhold)))
+            throw UsageError("--withhold: is the folder of -o or within it, or it is within that, expected one beside");
         order.scenes             = scene_files(line->scenes, common.up);
         const TruthSetRecord set = on_terminal(common, order, [&] { return write_truth(order); });
         std::uint64_t asked      = 0;
