@@ -34,10 +34,11 @@ json caption_of(const std::string& name, Language language) {
     return name.empty() ? json(false) : json(lecture_name(name, language));
 }
 
-void add_shown(const std::optional<LectureShow>& show, const SceneFiles& files, const fs::path& out, Language language,
-               json& pictures) {
+/// A picture without a caption is of the topic.
+void add_shown(const std::optional<LectureShow>& show, const SceneFiles& files, const fs::path& out, const json& topic,
+               Language language, json& pictures) {
     const auto add = [&](const FileName& file, const json& caption) {
-        json picture = files.figure(file, "", "", caption.is_string() ? caption : json(files.scene().title), out);
+        json picture = files.figure(file, "", "", caption.is_string() ? caption : topic, out);
         if (!picture.is_object()) return;
         picture["caption"] = caption;
         pictures.push_back(std::move(picture));
@@ -64,10 +65,10 @@ void add_variants(const ExperimentRecord& experiment, const SceneFiles& files, c
 json chart_of(const ExperimentRecord& experiment, Language language) {
     if (experiment.curves.empty()) return false;
     std::vector<FormulaSeries> series;
-    std::string about = lecture_name(experiment.y, language) + ":";
+    std::string about = lecture_name(experiment.y, language) + ": ";
     for (const ExperimentCurve& curve : experiment.curves) {
         const std::string name = lecture_name(curve.name, language);
-        about += " " + name + separator(language);
+        about += name + separator(language);
         series.push_back({name, curve.x, curve.measured, curve.formula});
     }
     json chart = formula_chart(series);
@@ -150,7 +151,7 @@ json row_view(const LectureRow& row, const LectureSources& sources, const Experi
     };
     if (files != nullptr) {
         shown["href"] = url((files->scene().page / "index.html").lexically_relative(out));
-        if (show || experiment == nullptr) add_shown(show, *files, out, language, pictures);
+        if (show || experiment == nullptr) add_shown(show, *files, out, words["topic"], language, pictures);
     }
     if (files != nullptr && show && !show->figures.empty()) {
         const auto root_of = [&](const std::string& frame) {
@@ -158,7 +159,8 @@ json row_view(const LectureRow& row, const LectureSources& sources, const Experi
             return of_frame == nullptr ? Field{} : of_frame->scene().root;
         };
         for (const LectureFigure& figure : show->figures) add_measured(figure_in_words(figure, root_of, language));
-        shown["scene"] = files->scene().title;
+        shown["scene"] =
+            language == Language::english ? files->scene().title : lecture_name("scene of the report", language);
     }
     if (experiment != nullptr) {
         add_variants(*experiment, *sources.experiments, out, language, pictures);
