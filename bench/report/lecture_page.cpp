@@ -61,6 +61,22 @@ void add_variants(const ExperimentRecord& experiment, const SceneFiles& files, c
     }
 }
 
+/// Lines of a formula break between terms alone: neither in brackets nor beside · and /.
+std::string with_terms_together(const std::string& formula) {
+    const std::string_view all = formula;
+    std::string text;
+    int depth = 0;
+    for (std::size_t at = 0; at < all.size(); ++at) {
+        if (all[at] == '(') ++depth;
+        if (all[at] == ')') --depth;
+        const std::string_view before = all.substr(0, at), after = all.substr(at + 1);
+        const bool joins = depth > 0 || before.ends_with(" ·") || before.ends_with(" /") || after.starts_with("· ") ||
+                           after.starts_with("/ ");
+        text += all[at] != ' ' ? std::string(1, all[at]) : joins ? "\u00a0" : " ";
+    }
+    return text;
+}
+
 /// Ticks, lines and titles, as the template formula_chart shows them; false where nothing was measured along a line.
 json chart_of(const ExperimentRecord& experiment, Language language) {
     if (experiment.curves.empty()) return false;
@@ -79,7 +95,7 @@ json chart_of(const ExperimentRecord& experiment, Language language) {
         }
     about.resize(about.size() - separator(language).size());
     chart["about"] = about;
-    chart["law"]   = lecture_name(experiment.law, language);
+    chart["law"]   = with_terms_together(lecture_name(experiment.law, language));
     chart["x"]     = lecture_name(experiment.x, language);
     chart["y"]     = lecture_name(experiment.y, language);
     // One letter stands upright: turned, an I is a dash.
