@@ -49,8 +49,8 @@ public:
     [[nodiscard]] Cell cell(const MethodChoice& choice, int view);
     [[nodiscard]] std::size_t computed() const { return computed_; }  ///< cells that were not found
 
-    /// The fastest of `runs` runs of a setting on view 0 at least, alone: a price, not a time to compare closely. It is
-    /// found where runs on this machine have paid it. Nothing where the setting does not serve, or failed.
+    /// The fastest of `runs` runs of a setting on view 0 at least, phase by phase, alone: a price, not a time to compare
+    /// closely. It is found where runs on this machine have paid it. Nothing where the setting does not serve, or failed.
     [[nodiscard]] std::optional<RunTimes> price(const MethodChoice& choice, int runs = 1);
 
     /// Whether one run of a setting takes longer than so many seconds: by its price where that is known, otherwise by a

@@ -829,6 +829,20 @@ TEST(HeldOut, ShareByHand) {
     EXPECT_EQ(share_beyond(0), 1);
 }
 
+/// A first run whose build was fast and whose visibility was disturbed.
+TEST_F(RecommendByHand, APriceIsTheFastestOfEachPhase) {
+    const MethodChoice rays = parse_method("ray_traced");
+    keep_made(
+        store_,
+        {{"key", lab_.machine_key("price", rays)},
+         {"price", {{"build_ms", 0.0}, {"aim_ms", {1e6}}, {"look_ms", 0.0}, {"visibility_ms", {1e6}}, {"runs", 1}}}});
+    EXPECT_EQ(lab_.price(rays)->visibility, std::vector{1e6}) << "one run was paid";
+    const auto price = lab_.price(rays, 2);
+    EXPECT_EQ(price->build + price->look, 0);
+    EXPECT_LT(price->aim[0], 1e6);
+    EXPECT_LT(price->visibility[0], 1e6);
+}
+
 TEST_F(RecommendByHand, TimesThatAreKeptAreMeasuredAnewWhenAsked) {
     const std::vector<double> good{0.001, 0.001, 0.001, 0.001};
     const MethodChoice rays = parse_method("ray_traced");
@@ -893,6 +907,28 @@ TEST_F(FirstAnswerByHand, TheRecommendationHasErrorsOfSmallPicturesAndCostsOfWho
     EXPECT_EQ(*r.candidates[r.exact->candidate].cost, 216);
     EXPECT_EQ(r.exact->ratio.median, 12);
     EXPECT_EQ(to_record(recommendation_record(r, o_))["size"], (Json{{"width", 8}, {"height", 5}}));
+}
+
+/// On small pictures `alias_free` costs more than twice as much, by work on triangles, of which whole ones have no more.
+TEST_F(FirstAnswerByHand, WorkOnTrianglesPassesNobodyOver) {
+    o_.seconds      = 1000;
+    const auto both = [&](MadeUp s, double small_ms, double whole_ms) {
+        o_.choices.push_back(parse_method(s.text));
+        s.ms = {0, 0, 0, small_ms};
+        keep_in(coarse_, s);
+        s.rmse.clear(), s.ms = {0, 0, 0, whole_ms};
+        keep_in(lab_, s, 0.1);
+    };
+    both({"exact", {0}, {}, kDrift}, 17, 60);
+    both({"alias_free", {0, 0, 0, 0}, {}, kDrift}, 40, 45);
+    both({"brute_force", {}, {}, kDrift}, 40, 180);
+    const Recommendation r = recommend(coarse_, lab_, o_);
+    EXPECT_EQ(coarse_.computed() + lab_.computed(), 0u) << "everything was made up";
+    ASSERT_TRUE(r.chosen.has_value());
+    EXPECT_EQ(text(r, *r.chosen), "alias_free");
+    ASSERT_EQ(r.passed_over.size(), 1u);
+    EXPECT_EQ(r.passed_over[0].choice.text(), "brute_force");
+    EXPECT_EQ(r.passed_over[0].ratio, 3) << "by whole pictures, as exact comes first";
 }
 
 TEST_F(FirstAnswerByHand, IsTheCheapestWithinTheLimits) {

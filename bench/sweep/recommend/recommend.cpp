@@ -306,9 +306,10 @@ private:
     /// limit of memory may be there for the sake of those that cost more.
     [[nodiscard]] std::optional<PassedOver> passed_over_by(const MethodChoice& choice) {
         if (choice.info->reference || options_.limits.front().metric->name == "memory_mb") return std::nullopt;
-        for (std::size_t k = 0; k < result_.candidates.size(); ++k)
-            if (is_answer(k) && costs_far_more(choice, result_.candidates[k].choice))
-                return PassedOver{choice, k, *price(choice) / *price(result_.candidates[k].choice)};
+        for (std::size_t k = 0; k < result_.candidates.size(); ++k) {
+            const auto ratio = is_answer(k) ? costs_far_more(choice, result_.candidates[k].choice) : std::nullopt;
+            if (ratio) return PassedOver{choice, k, *ratio};
+        }
         return std::nullopt;
     }
 
@@ -336,10 +337,25 @@ private:
         }
     }
 
-    [[nodiscard]] bool costs_far_more(const MethodChoice& a, const MethodChoice& b) {
-        const auto surely = [&](const MethodChoice& choice) { return price(choice, is_long(choice) ? 1 : 2); };
-        const std::optional<double> over = price(a), under = price(b);
-        return over && under && *over > kFar * *under && surely(a).value_or(0) > kFar * surely(b).value_or(kInfinite);
+    /// How many times the cost of `b` that of `a` is; nothing where that is not far more.
+    [[nodiscard]] std::optional<double> costs_far_more(const MethodChoice& a, const MethodChoice& b) {
+        const auto ratio_of = [&](const auto& price_of) -> std::optional<double> {
+            const std::optional<double> over = price_of(a), under = price_of(b);
+            return over && under && *over > kFar * *under ? std::optional(*over / *under) : std::nullopt;
+        };
+        const auto by_one    = [&](const MethodChoice& choice) { return price(choice); };
+        const auto by_two    = [&](const MethodChoice& choice) { return price(choice, is_long(choice) ? 1 : 2); };
+        const auto on_wholes = [&](const MethodChoice& choice) { return price_on_whole(choice); };
+        return ratio_of(by_one) && ratio_of(by_two) ? ratio_of(on_wholes) : std::nullopt;
+    }
+
+    /// By a run on the whole picture where that is short, since work on each triangle does not grow with the points.
+    [[nodiscard]] std::optional<double> price_on_whole(const MethodChoice& choice) {
+        const std::optional<RunTimes> few = small_.price(choice);
+        const double more                 = more_points(small_, whole_);
+        if (!few || more <= 1 || few->build + more * (few->all() - few->build) > kLongRunMs) return price(choice);
+        const std::optional<RunTimes> all = whole_.price(choice);
+        return all ? std::optional(price_ms(options_.workload, *all)) : std::nullopt;
     }
 
     /// Whether a run that serves takes long, a build that the workload never has included.
