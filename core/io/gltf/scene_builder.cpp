@@ -117,10 +117,14 @@ void GltfSceneBuilder::place_light(const Node& node, std::optional<Light> light,
     if (light->name.empty()) light->name = node_name;
     light->position = vec3(dvec3(m[3]));
     if (light->kind != LightKind::point) {
-        const auto back = direction(m, 2, "light", node_name), along = direction(m, 0, "light", node_name);
-        if (!back || !along) return;
+        const auto back = direction(m, 2, "light", node_name);
+        if (!back) return;
         light->direction = vec3(-*back);
-        if (is_area(light->kind)) scale_area_light(m, *along, *light);
+    }
+    if (is_area(light->kind)) {
+        const auto along = direction(m, 0, "light", node_name);
+        if (!along) return;
+        scale_area_light(m, *along, *light);
     }
     add_light(*node.json, std::move(*light));
 }

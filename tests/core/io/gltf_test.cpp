@@ -486,6 +486,9 @@ TEST(Gltf, WhatANodeOfNoSizeLightsOrSeesIsLeftOut) {
         EXPECT_TRUE(warns(scene, "The light of node \"gone\" has no direction, since the node is scaled to 0"));
         EXPECT_TRUE(warns(scene, "The camera of node \"blind\" has no direction"));
     }
+    const Scene thin = load(with_nodes(R"({"mesh": 0},)" + shining(0, R"(, "scale": [0, 1, 1])"),
+                                       punctual(R"({"type": "spot", "spot": {}})")));
+    EXPECT_EQ(thin.lights.size(), 1u) << "a spot has an axis, however thin its node is";
 }
 
 TEST(Gltf, NodesThatAreNotVisibleHideWhatIsBelowThem) {
