@@ -12,9 +12,9 @@ namespace {
 /// Whether a folder is another one, or would lie in it.
 bool is_in(const std::filesystem::path& folder, const std::filesystem::path& other) {
     const auto whole = [](const std::filesystem::path& p) {
-        return std::filesystem::weakly_canonical(std::filesystem::absolute(p / ""));
+        return std::filesystem::weakly_canonical(std::filesystem::absolute(p)) / "";
     };
-    const auto relative = (whole(folder) / "").lexically_relative(whole(other) / "");
+    const auto relative = whole(folder).lexically_relative(whole(other));
     return !relative.empty() && *relative.begin() != "..";
 }
 
