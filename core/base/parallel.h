@@ -3,6 +3,7 @@
 // and within Embree's build that is one without denormals.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 
@@ -56,14 +57,19 @@ void run_within(const WorkLimit* limit, const Work& work) {
     work();
 }
 
-/// Calls body(begin, end) on disjoint ranges that cover [0, n), of about `grain` each, from many threads.
+/// Calls body(begin, end) on disjoint ranges that cover [0, n), of about `grain` or more, from many threads.
 template <class Body>
 void parallel_ranges(std::size_t n, std::size_t grain, const Body& body) {
     tbb::task_group_context context(tbb::task_group_context::bound, tbb::task_group_context::fp_settings);
     const WorkLimit* const limit = WorkLimit::current();
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, n, grain),
-        [&](const tbb::blocked_range<std::size_t>& r) { run_within(limit, [&] { body(r.begin(), r.end()); }); },
+        [&](const tbb::blocked_range<std::size_t>& r) {
+            // TBB's ranges may be a large part of the loop, for which a limit must not have to wait.
+            const std::size_t step = limit == nullptr ? r.size() : std::max(grain, r.size() / 16);
+            for (std::size_t begin = r.begin(); begin < r.end(); begin += step)
+                run_within(limit, [&] { body(begin, std::min(begin + step, r.end())); });
+        },
         context);
 }
 

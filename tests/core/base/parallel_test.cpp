@@ -96,5 +96,26 @@ TEST(WorkLimit, HoldsForLoopsWithinLoops) {
                  std::runtime_error);
 }
 
+/// TBB's own ranges are large where nobody waits for work, as on one thread.
+TEST(WorkLimit, IsAskedWithinLargeRanges) {
+    struct Asked final : WorkLimit {
+        mutable std::atomic<int> times = 0;
+        void check() const override { ++times; }
+    };
+    constexpr std::size_t kCount = 100003;
+    const ThreadLimit one(1);
+    const Asked limit;
+    const WorkLimit::Scope scope(&limit);
+    std::vector<int> met(kCount);
+    std::size_t largest = 0;
+    parallel_ranges(kCount, 7, [&](std::size_t begin, std::size_t end) {
+        largest = std::max(largest, end - begin);
+        for (std::size_t i = begin; i < end; ++i) ++met[i];
+    });
+    EXPECT_EQ(met, std::vector<int>(kCount, 1));
+    EXPECT_LE(largest, kCount / 16);
+    EXPECT_GE(limit.times, 16);
+}
+
 }  // namespace
 }  // namespace umbra
