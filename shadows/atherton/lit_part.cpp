@@ -30,11 +30,10 @@ using Traits   = CGAL::Arr_curve_data_traits_2<Segments, int, std::plus<int>>;  
 using Arrangement = CGAL::Arrangement_2<Traits, CGAL::Arr_face_extended_dcel<Traits, int>>;
 using Curve       = Traits::X_monotone_curve_2;
 using FaceHandle  = Arrangement::Face_handle;
-using Rational    = Kernel::Exact_kernel::FT;
 
 constexpr int kUnknown = std::numeric_limits<int>::min();
 
-Kernel::Point_2 point(const std::array<Exact, 2>& p) { return {p[0], p[1]}; }
+Kernel::Point_2 point(const std::array<Exact, 2>& p) { return {Kernel::FT(p[0]), Kernel::FT(p[1])}; }
 
 /// With its change as seen along the curve from its lexicographically smaller end.
 Curve curve(const std::array<Exact, 2>& from, const std::array<Exact, 2>& to, int change) {
@@ -98,10 +97,10 @@ void keep_lit(Arrangement& plane) {
     for (const auto edge : needless) plane.remove_edge(edge);
 }
 
-std::array<Rational, 2> coordinates(const Kernel::Point_2& p) { return {p.x().exact(), p.y().exact()}; }
-dvec2 rounded(const std::array<Rational, 2>& p) { return {CGAL::to_double(p[0]), CGAL::to_double(p[1])}; }
+std::array<Exact, 2> coordinates(const Kernel::Point_2& p) { return {p.x().exact(), p.y().exact()}; }
+dvec2 rounded(const std::array<Exact, 2>& p) { return {CGAL::to_double(p[0]), CGAL::to_double(p[1])}; }
 
-bool on_border(const std::array<Rational, 2>& a, const std::array<Rational, 2>& b) {
+bool on_border(const std::array<Exact, 2>& a, const std::array<Exact, 2>& b) {
     return (a[0] == 0 && b[0] == 0) || (a[1] == 0 && b[1] == 0) || (a[0] + a[1] == 1 && b[0] + b[1] == 1);
 }
 
@@ -139,7 +138,7 @@ LitPart::LitPart(const std::vector<OutlinePiece>& pieces, float u, float v, int 
     sort_into_rows();
 }
 
-void LitPart::add_edge(const std::array<Rational, 2>& a, const std::array<Rational, 2>& b) {
+void LitPart::add_edge(const std::array<Exact, 2>& a, const std::array<Exact, 2>& b) {
     const bool border = on_border(a, b);
     edges_.push_back({rounded(a), rounded(b), border});
     ends_.push_back({a, b});
@@ -170,14 +169,13 @@ void LitPart::sort_into_rows() {
 /// counts from its lower end on, without its upper end.
 LitPart::At LitPart::at(float u, float v) const {
     const double x = u, y = v;
-    const Rational exact_x(x), exact_y(y);
     bool inside = false, on_own_border = false;
     const std::size_t r = row(y);
     for (std::uint32_t k = row_first_[r]; k < row_first_[r + 1]; ++k) {
         const LitEdge& edge = edges_[row_edges_[k]];
         const Ends& ends    = ends_[row_edges_[k]];
-        const int a_over    = sign(edge.a.y - y, kRounded, [&]() -> Rational { return ends.a[1] - exact_y; });
-        const int b_over    = sign(edge.b.y - y, kRounded, [&]() -> Rational { return ends.b[1] - exact_y; });
+        const int a_over    = sign(edge.a.y - y, kRounded, [&]() -> Exact { return ends.a[1] - Exact(y); });
+        const int b_over    = sign(edge.b.y - y, kRounded, [&]() -> Exact { return ends.b[1] - Exact(y); });
         if (a_over * b_over > 0) continue;
         if (std::min(edge.a.x, edge.b.x) > x + kRounded) continue;
         const bool crosses = (a_over > 0) != (b_over > 0);
@@ -187,14 +185,14 @@ LitPart::At LitPart::at(float u, float v) const {
         }
         const dvec2 d = edge.b - edge.a, q = dvec2(x, y) - edge.a;
         const double error = 4 * kRounded * (std::abs(d.x) + std::abs(d.y) + std::abs(q.x) + std::abs(q.y) + kRounded);
-        const int left     = sign(d.x * q.y - d.y * q.x, error, [&]() -> Rational {
-            return (ends.b[0] - ends.a[0]) * (exact_y - ends.a[1]) - (ends.b[1] - ends.a[1]) * (exact_x - ends.a[0]);
+        const int left     = sign(d.x * q.y - d.y * q.x, error, [&]() -> Exact {
+            return (ends.b[0] - ends.a[0]) * (Exact(y) - ends.a[1]) - (ends.b[1] - ends.a[1]) * (Exact(x) - ends.a[0]);
         });
         if (left == 0) {
             // On its line, and between its ends as far as v tells; a level edge needs u, too.
             const bool level   = a_over == 0 && b_over == 0;
             const auto [l, h]  = std::minmax(ends.a[0], ends.b[0]);
-            const bool outside = level && (exact_x < l || h < exact_x);
+            const bool outside = level && (Exact(x) < l || h < Exact(x));
             if (outside) continue;
             if (!edge.border) return At::boundary;
             on_own_border = true;

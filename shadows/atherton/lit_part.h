@@ -42,12 +42,11 @@ private:
         dvec2 a{0}, b{0};
         bool border = false;  ///< on the receiver's own border
     };
-    using Rational = CGAL::Exact_predicates_exact_constructions_kernel::Exact_kernel::FT;  ///< of any number of threads
     struct Ends {
-        std::array<Rational, 2> a, b;
+        std::array<Exact, 2> a, b;
     };
 
-    void add_edge(const std::array<Rational, 2>& a, const std::array<Rational, 2>& b);
+    void add_edge(const std::array<Exact, 2>& a, const std::array<Exact, 2>& b);
     void sort_into_rows();
     [[nodiscard]] std::size_t row(double v) const;
 

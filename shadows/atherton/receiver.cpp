@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "umbra/core/base/predicates.h"
 #include "umbra/core/render/facing.h"
@@ -29,6 +30,21 @@ Exact3 cross(const Exact3& a, const Exact3& b) {
 }
 Exact3 turned(const Exact3& a, bool turn) { return turn ? Exact3{-a[0], -a[1], -a[2]} : a; }
 
+/// As `clip`, in double: the part of a segment, from 0 to 1, in which no linear function is surely negative, or not above
+/// 0 at either end.
+struct MayBeKept {
+    double first = 0, last = 1;
+
+    /// What it is at most at both ends.
+    void keep(double at_a, double at_b) {
+        if (at_a <= 0 && at_b <= 0) last = -1;
+        // The rounding of the quotient is relative, since the two have different signs.
+        if (at_a < 0) first = std::max(first, at_a / (at_a - at_b));
+        if (at_b < 0) last = std::min(last, at_a / (at_a - at_b));
+    }
+    [[nodiscard]] bool empty() const { return first > last + 0x1p-48; }
+};
+
 }  // namespace
 
 Receiver::Receiver(const Scene& scene, TriangleId t, const Light& light)
@@ -36,11 +52,11 @@ Receiver::Receiver(const Scene& scene, TriangleId t, const Light& light)
       b_(scene.vertex(t, 1)),
       c_(scene.vertex(t, 2)),
       infinite_(light.kind == LightKind::directional) {
-    const vec3 l = infinite_ ? -light.direction : light.position;
-    from_        = infinite_ ? a_ : l;
-    mirrored_    = side_of_light(light, a_, b_, c_) < 0;
+    light_    = infinite_ ? -light.direction : light.position;
+    from_     = infinite_ ? a_ : light_;
+    mirrored_ = side_of_light(light, a_, b_, c_) < 0;
 
-    const dvec3 p = dvec3(b_) - dvec3(a_), q = dvec3(c_) - dvec3(a_), g = infinite_ ? dvec3(l) : dvec3(l) - dvec3(a_);
+    const dvec3 p = dvec3(b_) - dvec3(a_), q = dvec3(c_) - dvec3(a_), l(light_), g = infinite_ ? l : l - dvec3(a_);
     const double turn = mirrored_ ? -1 : 1, P = largest(p), Q = largest(q), G = largest(g);
     // A component of a cross product: two products of rounded differences, and their difference. An offset: three
     // products of such components with g.
@@ -55,13 +71,14 @@ Receiver::Receiver(const Scene& scene, TriangleId t, const Light& light)
         rest_.error += height_.error;
     }
     rest_.error += kUnit * largest(rest_.normal) * 4;
+}
 
-    const Exact3 ep = exact(b_) - exact(a_), eq = exact(c_) - exact(a_),
-                 eg     = infinite_ ? exact(l) : exact(l) - exact(a_);
-    exact_normal_       = turned(cross(ep, eq), mirrored_);
-    exact_u_            = turned(cross(eq, eg), mirrored_);
-    exact_v_            = turned(cross(eg, ep), mirrored_);
-    exact_light_height_ = dot(exact_normal_, eg);
+const Receiver::ExactForms& Receiver::exact_forms() const {
+    if (exact_) return *exact_;
+    const Exact3 p = exact(b_) - exact(a_), q = exact(c_) - exact(a_),
+                 g = infinite_ ? exact(light_) : exact(light_) - exact(a_), n = turned(cross(p, q), mirrored_);
+    return exact_.emplace(
+        ExactForms{exact(from_), turned(cross(q, g), mirrored_), turned(cross(g, p), mirrored_), n, dot(n, g)});
 }
 
 int Receiver::side(vec3 q) const {
@@ -70,10 +87,11 @@ int Receiver::side(vec3 q) const {
 }
 
 Projected Receiver::project(vec3 q) const {
-    const Exact3 d = exact(q) - exact(from_);
-    const Exact n  = dot(exact_normal_, d);
-    if (infinite_) return {dot(exact_u_, d), dot(exact_v_, d), exact_light_height_, n};
-    return {dot(exact_u_, d), dot(exact_v_, d), -n, exact_light_height_ + n};
+    const ExactForms& forms = exact_forms();
+    const Exact3 d          = exact(q) - forms.from;
+    const Exact n           = dot(forms.normal, d);
+    if (infinite_) return {dot(forms.u, d), dot(forms.v, d), forms.light_height, n};
+    return {dot(forms.u, d), dot(forms.v, d), -n, forms.light_height + n};
 }
 
 std::pair<double, double> Receiver::Form::at(dvec3 d) const {
@@ -85,9 +103,9 @@ std::pair<double, double> Receiver::Form::at(dvec3 d) const {
 
 bool Receiver::may_cover(vec3 a, vec3 b) const {
     const dvec3 da = dvec3(a) - dvec3(from_), db = dvec3(b) - dvec3(from_);
-    for (const Form* form : {&u_, &v_, &rest_, &height_})
-        if (form->surely_negative(da) && form->surely_negative(db)) return false;
-    return true;
+    MayBeKept part;
+    for (const Form* form : {&u_, &v_, &rest_, &height_}) part.keep(form->most(da), form->most(db));
+    return !part.empty();
 }
 
 // A corner of the receiver lies on two of its borders: a where u = v = 0, b where v = rest = 0, c where u = rest = 0.
@@ -97,31 +115,34 @@ bool Receiver::may_meet(const std::array<vec3, 3>& position, const std::array<in
         const auto& [form, opposite] = border;
         for (std::size_t k = 0; k < 3; ++k) {
             const bool on_it = corner[k] >= 0 && corner[k] != opposite;
-            if (!on_it && !form->surely_negative(dvec3(position[k]) - dvec3(from_))) return false;
+            if (!on_it && !(form->most(dvec3(position[k]) - dvec3(from_)) < 0)) return false;
         }
         return true;
     });
 }
 
-/// On the border of the receiver that is opposite to a corner, or outside of it.
-bool Receiver::surely_beyond(const Form& border, int opposite, const Passage& passage) const {
-    if (passage.corner >= 0) return passage.corner != opposite;
+/// The border that is opposite to a corner, at a passage: at most this, and infinite where that is not known.
+double Receiver::most(const Form& border, int opposite, const Passage& passage) const {
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    if (passage.corner >= 0) return passage.corner == opposite ? kInfinite : 0;
     const dvec3 p = dvec3(passage.above) - dvec3(from_), q = dvec3(passage.below) - dvec3(from_);
-    if (passage.below_in_plane) return border.surely_negative(q);
+    if (passage.below_in_plane) return border.most(q);
     const auto [high, high_off] = height_.at(p);
     const auto [low, low_off]   = height_.at(q);
     const auto [at_p, at_p_off] = border.at(p);
     const auto [at_q, at_q_off] = border.at(q);
     const double fall = high - low, off = high_off + low_off;
-    if (!(fall > 4 * off)) return false;
-    const double value = at_p + high / fall * (at_q - at_p);
-    return value < -2 * (at_p_off + at_q_off + std::abs(at_q - at_p) * (2 * off / fall + 8 * kUnit));
+    if (!(fall > 4 * off)) return kInfinite;
+    return at_p + high / fall * (at_q - at_p) +
+           2 * (at_p_off + at_q_off + std::abs(at_q - at_p) * (2 * off / fall + 8 * kUnit));
 }
 
 bool Receiver::may_cut(const Passage& a, const Passage& b) const {
-    return !(surely_beyond(u_, 1, a) && surely_beyond(u_, 1, b)) &&
-           !(surely_beyond(v_, 2, a) && surely_beyond(v_, 2, b)) &&
-           !(surely_beyond(rest_, 0, a) && surely_beyond(rest_, 0, b));
+    MayBeKept part;
+    part.keep(most(u_, 1, a), most(u_, 1, b));
+    part.keep(most(v_, 2, a), most(v_, 2, b));
+    part.keep(most(rest_, 0, a), most(rest_, 0, b));
+    return !part.empty();
 }
 
 /// The plane with a normal of length 1, which its tilt refers to; a plane of which nothing is known holds everything.

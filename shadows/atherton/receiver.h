@@ -1,5 +1,6 @@
 // A triangle as a receiver: positions between it and one light, projected from the light onto its plane. Nothing is
-// rounded: numbers are CGAL's lazy ones, intervals that become rationals where an interval cannot tell.
+// rounded: numbers are rationals. Lazy ones would have to compute most of these all the same, since an interval does not
+// tell that two outlines meet in one point.
 #pragma once
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
@@ -13,7 +14,7 @@
 
 namespace umbra::atherton {
 
-using Exact  = CGAL::Exact_predicates_exact_constructions_kernel::FT;  ///< of one thread at a time
+using Exact  = CGAL::Exact_predicates_exact_constructions_kernel::Exact_kernel::FT;
 using Exact3 = std::array<Exact, 3>;
 
 /// A position projected from the light onto the receiver's plane, in homogeneous coordinates: u / w and v / w are its
@@ -24,7 +25,7 @@ struct Projected {
     Exact u, v, w, height;
 };
 
-/// A receiver and a hard light that does not lie in its plane.
+/// A receiver and a hard light that does not lie in its plane. For one thread at a time.
 class Receiver {
 public:
     Receiver(const Scene& scene, TriangleId t, const Light& light);
@@ -66,20 +67,27 @@ private:
         double slip   = 0;  ///< of the offset
         /// At q - from_ = d, and how far off that may be.
         [[nodiscard]] std::pair<double, double> at(dvec3 d) const;
-        [[nodiscard]] bool surely_negative(dvec3 d) const {
+        /// At most this.
+        [[nodiscard]] double most(dvec3 d) const {
             const auto [value, off] = at(d);
-            return value < -off;
+            return value + off;
         }
         [[nodiscard]] BoxTree::Region::Plane plane(double& tilt) const;
     };
     [[nodiscard]] BoxTree::Region region(const Form& last) const;
-    [[nodiscard]] bool surely_beyond(const Form& border, int opposite, const Passage& passage) const;
+    [[nodiscard]] double most(const Form& border, int opposite, const Passage& passage) const;
 
-    vec3 a_, b_, c_, from_{0};
+    /// What u, v and w are computed from; once for a receiver, and not at all for the many that nothing is projected onto.
+    struct ExactForms {
+        Exact3 from, u, v, normal;
+        Exact light_height;  ///< w where the light is a direction
+    };
+    [[nodiscard]] const ExactForms& exact_forms() const;
+
+    vec3 a_, b_, c_, light_{0}, from_{0};  ///< light: a position or, where it is at infinity, the direction to it
     bool mirrored_ = false, infinite_ = false;
     Form u_, v_, rest_, height_;  ///< rest: w - u - v
-    Exact3 exact_u_, exact_v_, exact_normal_;
-    Exact exact_light_height_;  ///< w where the light is a direction
+    mutable std::optional<ExactForms> exact_{};
 };
 
 /// The part of the segment from a to b that is between the receiver and the light, without pieces that are on the
