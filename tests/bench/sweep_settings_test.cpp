@@ -971,6 +971,15 @@ TEST_F(FirstAnswerByHand, IsBeyondALimitInNoViewNorByItsBoundAndLeavesNothingUnd
     EXPECT_FALSE(first(0)) << "nothing is begun behind the time";
 }
 
+/// The first setting's run takes 250 ms at few points, so that rays come before it and before all others of its method,
+/// which cost more than they.
+TEST_F(FirstAnswerByHand, SlowMethodsComeBehindTheOthers) {
+    add("shadow_volumes", {}, 500);
+    add("shadow_volumes:edges=per_triangle", {}, 6);
+    add("ray_traced", kWithin, 4);
+    EXPECT_EQ(first()->choice.text(), "ray_traced");
+}
+
 /// Of several the cheapest that is within the limits, and nothing else is begun.
 TEST_F(FirstAnswerByHand, IsFromAnEarlierQuestionWhereOneKnowsIt) {
     add("exact", {}, 10);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "umbra/bench/sweep/bounds.h"
 #include "umbra/core/base/stopwatch.h"
@@ -20,6 +21,7 @@ constexpr double kSecondsOfKept = 1;  ///< of computing further views of what ea
 constexpr double kFarBeyond = 2;  ///< times the limit
 
 constexpr double kLongMs = 500;  ///< of one run, at few points or at all: nobody waits for a longer one
+constexpr double kSlowMs = 200;  ///< of one run at few points: a method with a longer one comes behind the others
 
 bool depends_on_the_size(const Metric& metric) {
     return metric.name != "rmse" && metric.name != "mae" && metric.name != "image_rmse";
@@ -62,13 +64,21 @@ public:
     /// no further one of the family can be the answer.
     [[nodiscard]] std::optional<double> look_at(const MethodChoice& choice) {
         const bool is_beyond             = is_far_beyond_as_kept(choice);
-        const std::optional<double> cost = cost_of(choice, is_beyond ? few_ : coarse_);
+        const std::optional<double> cost = cost_of(choice, lab_for(choice));
         if (!cost || (best_ && *cost >= best_->cost) || (!is_beyond && take_if_within(choice, *cost)))
             return std::nullopt;
         return cost;
     }
 
+    [[nodiscard]] bool takes_longer(const MethodChoice& choice, double ms) {
+        return !choice.info->reference && lab_for(choice).takes_longer(choice, ms / 1000);
+    }
+
 private:
+    [[nodiscard]] SceneLab& lab_for(const MethodChoice& choice) {
+        return is_far_beyond_as_kept(choice) ? few_ : coarse_;
+    }
+
     /// The views, from view 0 on, that need not be computed; no more than an answer is from.
     [[nodiscard]] static int kept_views(SceneLab& lab, const MethodChoice& choice) {
         int views = 0;
@@ -105,7 +115,7 @@ private:
     /// By one run on the whole picture, where one at few points does not say already that it is dearer; from that one
     /// where the other would take too long.
     [[nodiscard]] std::optional<double> cost_of(const MethodChoice& choice, SceneLab& small) {
-        if (!choice.info->reference && small.takes_longer(choice, kLongMs / 1000)) return std::nullopt;
+        if (takes_longer(choice, kLongMs)) return std::nullopt;
         const std::optional<RunTimes> few = small.price(choice);
         if (!few) return std::nullopt;
         const double more = more_points(small, whole_);
@@ -167,17 +177,23 @@ std::optional<FirstAnswer> first_answer(SceneLab& coarse, SceneLab& whole, const
     const bool is_kept = search.best().has_value();
     struct Line {
         std::span<const MethodChoice> left;
-        double last = 0;  ///< what the setting before the first of these costs
+        double last  = 0;      ///< what the setting before the first of these costs
+        bool is_slow = false;  ///< a run of the method takes longer than kSlowMs
     };
     std::vector<Line> lines;
     for (const Family& family : all) lines.push_back({family});
     // Always where the last one was cheapest: what costs a lot is looked at if nothing that costs little is an answer.
     while (!is_kept && !lines.empty() && !search.is_over()) {
         const auto line = std::ranges::min_element(
-            lines, {}, [](const Line& l) { return std::pair(!l.left.front().info->reference, l.last); });
-        const auto cost = search.look_at(line->left.front());
+            lines, {}, [](const Line& l) { return std::tuple(!l.left.front().info->reference, l.is_slow, l.last); });
+        const MethodChoice& choice = line->left.front();
+        if (!line->is_slow && search.takes_longer(choice, kSlowMs)) {
+            for (Line& other : lines) other.is_slow = other.is_slow || other.left.front().info == choice.info;
+            continue;
+        }
+        const auto cost = search.look_at(choice);
         if (cost && line->left.size() > 1)
-            *line = {line->left.subspan(1), *cost};
+            *line = {line->left.subspan(1), *cost, line->is_slow};
         else
             lines.erase(line);
     }
