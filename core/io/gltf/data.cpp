@@ -2,6 +2,7 @@
 // Khronos Group. glTF 2.0 Specification, sections 3.6 (Binary Data Storage) and 4 (GLB). 2021
 #include "umbra/core/io/gltf/data.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
@@ -159,13 +160,15 @@ std::string_view GltfData::file_bytes(const JsonValue& at, const std::string& ur
         if (!decoded) json_.fail(at, "the data URI holds what is not base64");
         bytes = std::move(*decoded);
     } else {
-        const std::string name = decode_percent(uri);
+        std::string name = decode_percent(uri);
+        std::error_code error;
+        if (!std::filesystem::exists(folder_ / name, error))
+            std::replace(name.begin(), name.end(), '\\', '/');  // as viewers in browsers have it
         const path relative(name);
         if (name.empty() || name.find('\0') != name.npos || name.find("://") != name.npos || relative.is_absolute())
             json_.fail(
                 at, fmt::format("the URI \"{:.60}\" is not read, expected a file beside this one or a data URI", uri));
         const path target = folder_ / relative;
-        std::error_code error;
         if (!std::filesystem::is_regular_file(target, error))
             json_.fail(at, fmt::format("there is no file {}", target.string()));
         bytes = read_text(target).text;

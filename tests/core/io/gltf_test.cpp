@@ -333,6 +333,8 @@ TEST(Gltf, BuffersInFilesAndInTheBinaryChunk) {
     const Scene outside =
         load_scene(folder.write("a.gltf", rest + R"(, "buffers": [{"byteLength": 116, "uri": "my%20data.bin"}]})"));
     EXPECT_EQ(outside.triangles.size(), 2u);
+    const std::string elsewhere = R"(, "buffers": [{"byteLength": 116, "uri": "..\\my%20data.bin"}]})";
+    EXPECT_EQ(load_scene(folder.write("sub/a.gltf", rest + elsewhere)).positions, outside.positions);
     const Scene inside =
         load_scene(folder.write("a.glb", glb(rest + R"(, "buffers": [{"byteLength": 116}]})", kSquare)));
     EXPECT_EQ(inside.positions, outside.positions);
