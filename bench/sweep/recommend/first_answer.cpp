@@ -182,7 +182,8 @@ std::optional<FirstAnswer> first_answer(SceneLab& coarse, SceneLab& whole, const
     };
     std::vector<Line> lines;
     for (const Family& family : all) lines.push_back({family});
-    // Always where the last one was cheapest: what costs a lot is looked at if nothing that costs little is an answer.
+    // Always where the last one was cheapest, slow methods last: what costs a lot is looked at if nothing that costs little
+    // is an answer.
     while (!is_kept && !lines.empty() && !search.is_over()) {
         const auto line = std::ranges::min_element(
             lines, {}, [](const Line& l) { return std::tuple(!l.left.front().info->reference, l.is_slow, l.last); });
