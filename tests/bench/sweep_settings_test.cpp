@@ -876,6 +876,14 @@ protected:
         s.rmse.clear(), s.ms.visibility = ms;
         keep_in(lab_, s);
     }
+    /// The setting, with errors in views of the small picture, and times that are known in both.
+    void both(MadeUp s, double small_ms, double whole_ms) {
+        o_.choices.push_back(parse_method(s.text));
+        s.ms = {0, 0, 0, small_ms};
+        keep_in(coarse_, s);
+        s.rmse.clear(), s.ms = {0, 0, 0, whole_ms};
+        keep_in(lab_, s, 0.1);
+    }
     [[nodiscard]] std::optional<FirstAnswer> first(double seconds = 100) {
         auto answer = first_answer(coarse_, lab_, o_, seconds);
         EXPECT_EQ(coarse_.computed() + lab_.computed(), 0u) << "everything was made up";
@@ -888,13 +896,6 @@ const std::vector<double> kWithin(3, 0.005), kBeyond{0.02};
 
 /// The answer takes turns on whole pictures. The price of the other, 60 ms for 8 x 5 points, is 216 for 16 x 9.
 TEST_F(FirstAnswerByHand, TheRecommendationHasErrorsOfSmallPicturesAndCostsOfWholeOnes) {
-    const auto both = [&](MadeUp s, double small_ms, double whole_ms) {
-        o_.choices.push_back(parse_method(s.text));
-        s.ms = {0, 0, 0, small_ms};
-        keep_in(coarse_, s);
-        s.rmse.clear(), s.ms = {0, 0, 0, whole_ms};
-        keep_in(lab_, s, 0.1);
-    };
     both({"ray_traced", {0.001, 0.001, 0.002, 0.001}, {}, kDrift}, 5, 20);
     both({"exact", {0}, {}, kDrift}, 60, 250);
     const Recommendation r = recommend(coarse_, lab_, o_);
@@ -911,14 +912,7 @@ TEST_F(FirstAnswerByHand, TheRecommendationHasErrorsOfSmallPicturesAndCostsOfWho
 
 /// On small pictures `alias_free` costs more than twice as much, by work on triangles, of which whole ones have no more.
 TEST_F(FirstAnswerByHand, WorkOnTrianglesPassesNobodyOver) {
-    o_.seconds      = 1000;
-    const auto both = [&](MadeUp s, double small_ms, double whole_ms) {
-        o_.choices.push_back(parse_method(s.text));
-        s.ms = {0, 0, 0, small_ms};
-        keep_in(coarse_, s);
-        s.rmse.clear(), s.ms = {0, 0, 0, whole_ms};
-        keep_in(lab_, s, 0.1);
-    };
+    o_.seconds = 1000;
     both({"exact", {0}, {}, kDrift}, 17, 60);
     both({"alias_free", {0, 0, 0, 0}, {}, kDrift}, 40, 45);
     both({"brute_force", {}, {}, kDrift}, 40, 180);

@@ -63,15 +63,17 @@ public:
     /// The next setting of a family: each costs more than those before it, and errs less. What it costs; nothing where
     /// no further one of the family can be the answer.
     [[nodiscard]] std::optional<double> look_at(const MethodChoice& choice) {
-        const bool is_beyond             = is_far_beyond_as_kept(choice);
-        const std::optional<double> cost = cost_of(choice, lab_for(choice));
+        SceneLab& small                  = lab_for(choice);
+        const bool is_beyond             = &small == &few_;
+        const std::optional<double> cost = cost_of(choice, small);
         if (!cost || (best_ && *cost >= best_->cost) || (!is_beyond && take_if_within(choice, *cost)))
             return std::nullopt;
         return cost;
     }
 
-    [[nodiscard]] bool takes_longer(const MethodChoice& choice, double ms) {
-        return !choice.info->reference && lab_for(choice).takes_longer(choice, ms / 1000);
+    /// Whether a run at few points takes longer than kSlowMs.
+    [[nodiscard]] bool is_slow(const MethodChoice& choice) {
+        return !choice.info->reference && lab_for(choice).takes_longer(choice, kSlowMs / 1000);
     }
 
 private:
@@ -115,7 +117,7 @@ private:
     /// By one run on the whole picture, where one at few points does not say already that it is dearer; from that one
     /// where the other would take too long.
     [[nodiscard]] std::optional<double> cost_of(const MethodChoice& choice, SceneLab& small) {
-        if (takes_longer(choice, kLongMs)) return std::nullopt;
+        if (!choice.info->reference && small.takes_longer(choice, kLongMs / 1000)) return std::nullopt;
         const std::optional<RunTimes> few = small.price(choice);
         if (!few) return std::nullopt;
         const double more = more_points(small, whole_);
@@ -188,7 +190,7 @@ std::optional<FirstAnswer> first_answer(SceneLab& coarse, SceneLab& whole, const
         const auto line = std::ranges::min_element(
             lines, {}, [](const Line& l) { return std::tuple(!l.left.front().info->reference, l.is_slow, l.last); });
         const MethodChoice& choice = line->left.front();
-        if (!line->is_slow && search.takes_longer(choice, kSlowMs)) {
+        if (!line->is_slow && search.is_slow(choice)) {
             for (Line& other : lines) other.is_slow = other.is_slow || other.left.front().info == choice.info;
             continue;
         }
